@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * dec_api.c - creation, queries and copying out.
+ */
+#include <string.h>
+
+#include "decoder/dec_internal.h"
+#include "format/alloc.h"
+#include "format/quantize.h"
+
+#define DEFAULT_MEMORY ((uint64_t)4 << 30)
+
+enum { END_CHUNK_SIZE = 2 + PMESH_CRC_SIZE };
+
+pmesh_decoder_config pmesh_decoder_config_default(void)
+{
+    return (pmesh_decoder_config){ .max_memory = DEFAULT_MEMORY,
+                                   .max_faces = PMESH_MAX_FACES };
+}
+
+pmesh_status pmesh_decoder_create(pmesh_decoder **out,
+                                  const pmesh_decoder_config *config)
+{
+    if (!out)
+        return PMESH_E_ARGUMENT;
+    *out = NULL;
+    pmesh_decoder_config c =
+        config ? *config : pmesh_decoder_config_default();
+    if (!c.allocator.alloc != !c.allocator.release)
+        return PMESH_E_ARGUMENT;
+    c.allocator = pmesh_allocator_resolve(c.allocator);
+    if (c.max_memory == 0)
+        c.max_memory = DEFAULT_MEMORY;
+    if (c.max_faces == 0)
+        c.max_faces = PMESH_MAX_FACES;
+
+    pmesh_decoder *dec = pmesh_alloc_zero(&c.allocator, 1, sizeof *dec);
+    if (!dec)
+        return PMESH_E_MEMORY;
+    dec->allocator = c.allocator;
+    dec->config = c;
+    dec->error = (pmesh_decode_error){ PMESH_OK, 0, "" };
+    dec->hash = PMESH_HASH_START;
+    *out = dec;
+    return PMESH_OK;
+}
+
+void pmesh_decoder_destroy(pmesh_decoder *dec)
+{
+    if (!dec)
+        return;
+    const pmesh_allocator a = dec->allocator;
+    pmesh_release(&a, dec->block, 1, (size_t)dec->block_size);
+    pmesh_release(&a, dec, 1, sizeof *dec);
+}
+
+pmesh_decode_error pmesh_decoder_error(const pmesh_decoder *dec)
+{
+    return dec->error;
+}
+
+static pmesh_level level_of(const pmesh_decoder *dec, uint32_t i)
+{
+    const pmesh_level_entry *e = &dec->header.levels[i];
+    return (pmesh_level){ .bytes = dec->header_end + e->bytes,
+                          .faces = e->faces,
+                          .mesh_vertices = e->vertices,
+                          .vertices = e->wedges,
+                          .error = e->error };
+}
+
+pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
+{
+    if (!dec->has_header)
+        return dec->error.status < 0 ? dec->error.status : PMESH_NEED_DATA;
+    const pmesh_header_chunk *h = &dec->header;
+    *out = (pmesh_header){
+        .format_version = PMESH_FORMAT_VERSION,
+        .content_hash = h->content_hash,
+        .profile = h->profile,
+        .placement = h->sizes.moves ? PMESH_OPTIMAL : PMESH_SUBSET,
+        .grid = h->grid,
+        .faces = h->sizes.faces,
+        .mesh_vertices = h->sizes.vertices,
+        .vertices = h->sizes.wedges,
+        .base_faces = h->sizes.base_faces,
+        .base_mesh_vertices = h->base_vertices,
+        .base_vertices = h->base_wedges,
+        .material_count = h->sizes.material_count,
+        .attribute_count = h->attribute_count,
+        .level_count = h->level_count,
+        .memory = dec->block_size,
+    };
+    memcpy(out->bounds, h->bounds, sizeof out->bounds);
+    memcpy(out->attributes, h->attributes, sizeof out->attributes);
+    for (uint32_t i = 0; i < h->level_count; i++)
+        out->levels[i] = level_of(dec, i);
+    out->bytes = out->levels[h->level_count - 1].bytes + END_CHUNK_SIZE;
+    return PMESH_OK;
+}
+
+pmesh_progress_state pmesh_decoder_progress(const pmesh_decoder *dec)
+{
+    return (pmesh_progress_state){
+        .bytes = dec->whole,
+        .faces = dec->has_base ? dec_faces_at(dec, dec->view.decoded) : 0,
+        .levels = dec->levels,
+        .complete = dec->stage == DEC_END && dec->error.status >= 0
+    };
+}
+
+/* The most vertices with at most `faces` faces; at least the base. */
+static uint32_t vertices_for_faces(const pmesh_decoder *dec, uint32_t faces)
+{
+    uint32_t low = dec->header.base_vertices, high = dec->view.decoded;
+    while (low < high) {
+        const uint32_t middle = low + (high - low + 1) / 2;
+        if (dec_faces_at(dec, middle) <= faces)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}
+
+static uint32_t vertices_for_target(const pmesh_decoder *dec,
+                                    const pmesh_target *target)
+{
+    uint32_t n = dec->view.decoded;
+    if (target->faces > 0) {
+        const uint32_t k = vertices_for_faces(dec, target->faces);
+        n = k < n ? k : n;
+    }
+    for (uint32_t i = 0; target->error > 0 && i < dec->levels; i++)
+        if ((double)dec->header.levels[i].error <= target->error) {
+            const uint32_t k = dec->header.levels[i].vertices;
+            n = k < n ? k : n;
+            break;
+        }
+    if (target->bytes > 0) {
+        uint32_t k = dec->header.base_vertices;
+        for (uint32_t i = 0; i < dec->levels; i++)
+            if (level_of(dec, i).bytes <= target->bytes)
+                k = dec->header.levels[i].vertices;
+        n = k < n ? k : n;
+    }
+    return n;
+}
+
+pmesh_status pmesh_decoder_refine(pmesh_decoder *dec,
+                                  const pmesh_target *target,
+                                  pmesh_changes *changes)
+{
+    static const pmesh_target everything = { 0 };
+    if (!dec->has_base)
+        return PMESH_NEED_DATA;
+    dec_view_move(dec,
+                  vertices_for_target(dec, target ? target : &everything),
+                  changes);
+    return PMESH_OK;
+}
+
+/* The error of the finest complete level at or below the visible mesh. */
+static float visible_error(const pmesh_decoder *dec)
+{
+    float error = dec->header.levels[0].error;
+    for (uint32_t i = 0; i < dec->levels; i++)
+        if (dec->header.levels[i].vertices <= dec->view.vertices)
+            error = dec->header.levels[i].error;
+    return error;
+}
+
+pmesh_status pmesh_decoder_mesh(const pmesh_decoder *dec, pmesh_view *out)
+{
+    if (!dec->has_base)
+        return PMESH_NEED_DATA;
+    const pmesh_mesh *m = &dec->codec.mesh;
+    const dec_view *view = &dec->view;
+    *out = (pmesh_view){
+        .vertex_count = dec_wedges_at(dec, view->vertices),
+        .mesh_vertex_count = view->vertices,
+        .face_count = dec_faces_at(dec, view->vertices),
+        .indices = view->index,
+        .positions_of = m->wedge_vertex,
+        .positions =
+            view->position ? &view->position[0][0] : &m->position[0][0],
+        .values = m->value,
+        .value_stride = m->value_count,
+        .materials = m->material,
+        .error = visible_error(dec)
+    };
+    return PMESH_OK;
+}
+
+static uint8_t *tuple(void *dst, size_t stride, size_t packed, uint32_t i)
+{
+    return (uint8_t *)dst + (size_t)i * (stride ? stride : packed);
+}
+
+pmesh_status pmesh_decoder_copy_positions(const pmesh_decoder *dec, float *dst,
+                                          size_t stride)
+{
+    pmesh_view view;
+    const pmesh_status status = pmesh_decoder_mesh(dec, &view);
+    if (status != PMESH_OK)
+        return status;
+    if (!dst || (stride && stride < 3 * sizeof *dst))
+        return PMESH_E_ARGUMENT;
+    for (uint32_t i = 0; i < view.vertex_count; i++) {
+        const uint32_t v = view.positions_of ? view.positions_of[i] : i;
+        float xyz[3];
+        for (int k = 0; k < 3; k++)
+            xyz[k] = (float)pmesh_grid_dequantize(
+                &dec->header.grid, k, view.positions[3 * (size_t)v + (size_t)k]);
+        memcpy(tuple(dst, stride, sizeof xyz, i), xyz, sizeof xyz);
+    }
+    return PMESH_OK;
+}
+
+pmesh_status pmesh_decoder_copy_attribute(const pmesh_decoder *dec,
+                                          uint32_t attribute, float *dst,
+                                          size_t stride)
+{
+    pmesh_view view;
+    const pmesh_status status = pmesh_decoder_mesh(dec, &view);
+    if (status != PMESH_OK)
+        return status;
+    if (!dst || attribute >= dec->header.attribute_count)
+        return PMESH_E_ARGUMENT;
+    const pmesh_attribute *a = &dec->header.attributes[attribute];
+    const size_t size = a->components * sizeof *dst;
+    if (stride && stride < size)
+        return PMESH_E_ARGUMENT;
+    uint32_t offset = 0;
+    for (uint32_t i = 0; i < attribute; i++)
+        offset += pmesh_coded_components(&dec->header.attributes[i]);
+    for (uint32_t i = 0; i < view.vertex_count; i++) {
+        float value[PMESH_MAX_COMPONENTS];
+        pmesh_attribute_dequantize(
+            a, view.values + (size_t)i * view.value_stride + offset, value);
+        memcpy(tuple(dst, stride, size, i), value, size);
+    }
+    return PMESH_OK;
+}
+
+/* Names are stored one after the other, each with its final 0. */
+const char *pmesh_decoder_material_name(const pmesh_decoder *dec,
+                                        uint32_t material)
+{
+    if (!dec->has_names)
+        return "";
+    const char *name = dec->names;
+    const char *end = dec->names + dec->header.names_size;
+    for (; material > 0 && name < end; material--)
+        name += strlen(name) + 1;
+    return name < end ? name : "";
+}
+
+uint32_t pmesh_decoder_parent(const pmesh_decoder *dec, uint32_t mesh_vertex)
+{
+    return dec->has_base && mesh_vertex < dec->view.decoded
+               ? dec->codec.mesh.parent[mesh_vertex]
+               : PMESH_NONE;
+}

@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * dec_chunk.c - which chunks may come when, and what they hold (SPEC 5.2, 5.3,
+ * 6.2, 6.3).
+ */
+#include <string.h>
+
+#include "decoder/dec_internal.h"
+#include "format/alloc.h"
+
+static pmesh_status corrupt(pmesh_decoder *dec, const char *rule)
+{
+    return dec_fail(dec, PMESH_E_CORRUPT, rule);
+}
+
+static bool all_levels(const pmesh_decoder *dec)
+{
+    return dec->has_base && dec->levels == dec->header.level_count;
+}
+
+pmesh_status dec_chunk_begin(pmesh_decoder *dec)
+{
+    const uint8_t type = dec->type;
+    dec->skipping = type >= PMESH_CHUNK_SKIPPABLE;
+    if (type == PMESH_CHUNK_HEADER) {
+        if (dec->has_header)
+            return corrupt(dec, "SPEC 5.2: a second header");
+        return dec->size <= PMESH_MAX_HEADER_SIZE
+                   ? PMESH_OK
+                   : corrupt(dec, "SPEC 5.3: the header is too large");
+    }
+    if (!dec->has_header)
+        return corrupt(dec, "SPEC 5.2: the first chunk is not the header");
+    if (dec->skipping)
+        return PMESH_OK;
+    if (type > PMESH_CHUNK_NAMES || type == 0)
+        return dec_fail(dec, PMESH_E_VERSION,
+                        "SPEC 5.2: an unknown critical chunk");
+    if (type == PMESH_CHUNK_NAMES)
+        return !dec->has_base && !dec->has_names &&
+                       dec->size == dec->header.names_size
+                   ? PMESH_OK
+                   : corrupt(dec, "SPEC 5.2: a names chunk out of place");
+    if (type == PMESH_CHUNK_BASE && dec->has_base)
+        return corrupt(dec, "SPEC 5.2: a second base mesh");
+    if (type != PMESH_CHUNK_BASE && !dec->has_base)
+        return corrupt(dec, "SPEC 5.2: a chunk before the base mesh");
+    if (type == PMESH_CHUNK_END)
+        return all_levels(dec) && dec->size == 0
+                   ? PMESH_OK
+                   : corrupt(dec, "SPEC 5.2: the end comes too early");
+    if (type != PMESH_CHUNK_BASE && all_levels(dec))
+        return corrupt(dec, "SPEC 5.2: more levels than the header declares");
+    return dec->size <= dec->header.chunk_size
+               ? PMESH_OK
+               : corrupt(dec, "SPEC 5.2: a chunk larger than the header "
+                              "declares");
+}
+
+static uint64_t aligned(uint64_t size)
+{
+    return (size + 15) / 16 * 16;
+}
+
+/* Codec, view, payload buffer and names, in this order. */
+static uint64_t measure(const pmesh_header_chunk *h, uint64_t part[4])
+{
+    const uint32_t payload =
+        h->chunk_size > h->names_size ? h->chunk_size : h->names_size;
+    part[0] = aligned(pmesh_codec_bind(NULL, &h->sizes, NULL));
+    part[1] = aligned(dec_view_bind(NULL, h, NULL));
+    part[2] = aligned(payload);
+    part[3] = aligned((uint64_t)h->names_size + 1);
+    return part[0] + part[1] + part[2] + part[3];
+}
+
+static pmesh_status allocate(pmesh_decoder *dec)
+{
+    const pmesh_header_chunk *h = &dec->header;
+    uint64_t part[4];
+    dec->block_size = measure(h, part);
+    if (h->sizes.faces > dec->config.max_faces ||
+        dec->block_size > dec->config.max_memory ||
+        dec->block_size > SIZE_MAX)
+        return dec_fail(dec, PMESH_E_LIMIT,
+                        "the mesh is larger than the decoder's limits");
+    uint8_t *at = pmesh_alloc(&dec->allocator, 1, (size_t)dec->block_size);
+    if (!at)
+        return dec_fail(dec, PMESH_E_MEMORY, "no memory for the mesh");
+    dec->block = at;
+    pmesh_codec_bind(&dec->codec, &h->sizes, at);
+    dec_view_bind(&dec->view, h, at + part[0]);
+    dec->payload = at + part[0] + part[1];
+    dec->names = (char *)at + part[0] + part[1] + part[2];
+    memset(dec->names, 0, h->names_size + 1);
+
+    memcpy(dec->codec.bounds, h->bounds, sizeof dec->codec.bounds);
+    pmesh_codec_limit_values(&dec->codec, h->attributes, h->attribute_count);
+    return PMESH_OK;
+}
+
+static pmesh_status take_header(pmesh_decoder *dec)
+{
+    pmesh_cursor in = pmesh_cursor_make(dec->small, dec->size);
+    const char *rule = NULL;
+    pmesh_status status = pmesh_header_read(&in, &dec->header, &rule);
+    if (status != PMESH_OK)
+        return dec_fail(dec, status, rule);
+    status = allocate(dec);
+    if (status != PMESH_OK)
+        return status;
+    dec->has_header = true;
+    dec->header_end = dec->offset;
+    return PMESH_OK;
+}
+
+/* The counts of the level table bind what was decoded. */
+static pmesh_status finish_level(pmesh_decoder *dec)
+{
+    const pmesh_level_entry *e = &dec->header.levels[dec->levels];
+    const pmesh_mesh *m = &dec->codec.mesh;
+    if (m->face_count != e->faces || m->vertex_count != e->vertices ||
+        m->wedge_count != e->wedges)
+        return corrupt(dec, "SPEC 6.3: a level differs from the level table");
+    dec->levels++;
+    dec->in_level = false;
+    return PMESH_OK;
+}
+
+static pmesh_status take_base(pmesh_decoder *dec)
+{
+    pmesh_coder coder;
+    const pmesh_header_chunk *h = &dec->header;
+    pmesh_coder_decode(&coder, dec->payload, dec->size);
+    pmesh_status status =
+        pmesh_base_code(&dec->codec, &coder, NULL, h->base_vertices,
+                        h->sizes.base_faces, h->base_wedges);
+    if (status != PMESH_OK)
+        return dec_fail(dec, status, dec->codec.rule);
+    if (!pmesh_coder_finish(&coder))
+        return corrupt(dec, "SPEC 6.1: bytes behind the base mesh");
+    status = finish_level(dec);
+    if (status != PMESH_OK)
+        return status;
+    dec->has_base = true;
+    dec_view_start(dec);
+    return PMESH_OK;
+}
+
+static pmesh_status take_block(pmesh_decoder *dec)
+{
+    pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->size);
+    const uint32_t splits = pmesh_get_count(&in, PMESH_MAX_BLOCK_SPLITS);
+    if (in.overrun || splits == 0)
+        return corrupt(dec, "SPEC 6.3: a block's count is out of range");
+    if (!dec->in_level)
+        pmesh_level_begin(&dec->codec);
+    dec->in_level = true;
+
+    pmesh_coder coder;
+    pmesh_coder_decode(&coder, in.next, (size_t)(in.end - in.next));
+    const pmesh_status status =
+        pmesh_block_code(&dec->codec, &coder, NULL, splits);
+    if (status != PMESH_OK)
+        return dec_fail(dec, status, dec->codec.rule);
+    if (!pmesh_coder_finish(&coder))
+        return corrupt(dec, "SPEC 6.1: bytes behind a block");
+    if (!dec_view_append(dec))
+        return corrupt(dec, "SPEC 5.3: more moved corners than declared");
+    return dec->type == PMESH_CHUNK_BLOCK_LAST ? finish_level(dec) : PMESH_OK;
+}
+
+static pmesh_status take_end(pmesh_decoder *dec)
+{
+    return dec->hash == dec->header.content_hash
+               ? PMESH_OK
+               : corrupt(dec, "SPEC 5.3: the content hash does not match");
+}
+
+pmesh_status dec_chunk_finish(pmesh_decoder *dec)
+{
+    switch (dec->type) {
+    case PMESH_CHUNK_HEADER:
+        return take_header(dec);
+    case PMESH_CHUNK_NAMES:
+        memcpy(dec->names, dec->payload, dec->size);
+        dec->has_names = true;
+        return PMESH_OK;
+    case PMESH_CHUNK_BASE:
+        return take_base(dec);
+    case PMESH_CHUNK_END:
+        return take_end(dec);
+    default:
+        return take_block(dec);
+    }
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * dec_internal.h - the decoder's state.
+ *
+ * The codec's mesh is always as fine as what was decoded. The visible mesh is
+ * the file's first n vertices; its index buffer is kept beside the codec and
+ * moves up and down by lists made once, when a block is decoded. A corner that
+ * names a vertex beyond the first n names the nearest ancestor among them.
+ */
+#ifndef DEC_INTERNAL_H
+#define DEC_INTERNAL_H
+
+#include "decoder/pmesh_decode.h"
+#include "format/codec.h"
+#include "format/header.h"
+
+/* The visible mesh and how to move it. Split u (a vertex number) shows the
+ * faces up to codec.face_end[u] and gives u its moved corners: the entries
+ * moved_first[u] .. moved_first[u + 1] - 1. */
+typedef struct dec_view {
+    uint32_t vertices; /* visible mesh vertices */
+    uint32_t decoded;  /* of those decoded: the most that can be visible */
+    uint32_t *index;   /* 3 per face: output vertices; behind the visible faces
+                          the values that faces are born with */
+    uint32_t *moved_first; /* per vertex, and one more */
+    uint32_t *moved;       /* half-edges */
+    uint32_t *moved_wedge; /* what they become; NULL without attributes: u */
+    /* If parents move: the visible positions, and for each split the parent's
+     * other position (beyond the split while it is not visible). */
+    int32_t (*position)[3];
+    int32_t (*other)[3];
+} dec_view;
+
+typedef enum dec_stage {
+    DEC_SIGNATURE,
+    DEC_CHUNK_START, /* type and size */
+    DEC_CHUNK_BODY,  /* payload and checksum */
+    DEC_END
+} dec_stage;
+
+struct pmesh_decoder {
+    pmesh_allocator allocator;
+    pmesh_decoder_config config;
+    pmesh_decode_error error;
+
+    /* Framing (dec_stream.c). */
+    dec_stage stage;
+    uint64_t offset;       /* bytes taken so far */
+    uint64_t chunk_offset; /* where the current chunk starts */
+    uint8_t start[16];     /* signature, or a chunk's type and size */
+    uint32_t start_size;
+    uint8_t type;
+    uint32_t size, received; /* of payload and checksum */
+    uint32_t crc;
+    uint8_t tail[PMESH_CRC_SIZE];
+    uint64_t hash;
+    uint64_t whole;      /* bytes up to the last complete chunk */
+    bool skipping;
+
+    /* Contents (dec_chunk.c). */
+    bool has_header, has_base, has_names;
+    uint64_t header_end; /* bytes up to the end of the header chunk */
+    pmesh_header_chunk header;
+    uint32_t levels;     /* complete */
+    bool in_level;
+    pmesh_codec codec;
+    dec_view view;
+    uint8_t *payload; /* buffer of header.chunk_size bytes */
+    char *names;      /* the names chunk and a final 0 */
+    void *block;      /* the one allocation behind the handle */
+    uint64_t block_size;
+    uint8_t small[PMESH_MAX_HEADER_SIZE]; /* payload of the header chunk */
+};
+
+/* Makes `status` final; offset is that of the current chunk. */
+pmesh_status dec_fail(pmesh_decoder *dec, pmesh_status status,
+                      const char *rule);
+
+/* Is a chunk of this type and payload size legal here? Sets skipping. */
+pmesh_status dec_chunk_begin(pmesh_decoder *dec);
+
+/* Takes in a chunk whose checksum was right. */
+pmesh_status dec_chunk_finish(pmesh_decoder *dec);
+
+/* Bytes and layout of the view's arrays, as pmesh_codec_bind(). */
+uint64_t dec_view_bind(dec_view *view, const pmesh_header_chunk *header,
+                       void *block);
+
+/* Makes the base mesh visible. */
+void dec_view_start(pmesh_decoder *dec);
+
+/* Lists what the codec's block changed. False if it moves more corners than
+ * the header declares. */
+bool dec_view_append(pmesh_decoder *dec);
+
+/* Moves the visible mesh to `vertices` mesh vertices. */
+void dec_view_move(pmesh_decoder *dec, uint32_t vertices,
+                   pmesh_changes *changes);
+
+/* Faces, and output vertices, of the visible mesh's first n vertices. */
+uint32_t dec_faces_at(const pmesh_decoder *dec, uint32_t vertices);
+uint32_t dec_wedges_at(const pmesh_decoder *dec, uint32_t vertices);
+
+#endif

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * pmesh_decode.h - turns a .pmesh stream, or any prefix of one, into triangles
+ * at any face budget. Safe on hostile input.
+ *
+ *   pmesh_decoder *dec;
+ *   pmesh_decoder_create(&dec, NULL);
+ *   while ((size = read_some(buffer)) > 0)
+ *       if (pmesh_decoder_feed(dec, buffer, size) < 0)
+ *           break;                       (the mesh so far stays usable)
+ *   pmesh_decoder_refine(dec, &(pmesh_target){ .faces = 5000 }, NULL);
+ *   pmesh_view view;
+ *   pmesh_decoder_mesh(dec, &view);
+ *   pmesh_decoder_copy_positions(dec, xyz, 0);
+ *   draw(xyz, view.vertex_count, view.indices, 3 * view.face_count);
+ *   pmesh_decoder_destroy(dec);
+ *
+ * feed() decodes what arrives; refine() moves the visible mesh up or down to a
+ * budget among what is decoded, without reading bytes again. Vertices are
+ * appended when refining and popped when coarsening, faces too; only the
+ * corners next to a split are rewritten. With subset placement a vertex never
+ * changes once it is there.
+ *
+ * Two allocations: the handle, and one block when the header is known.
+ * No globals, threads, files, or floating point before dequantisation: the
+ * result depends on the bytes alone, on every compiler and CPU.
+ */
+#ifndef PMESH_DECODE_H
+#define PMESH_DECODE_H
+
+#include "format/pmesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct pmesh_decoder pmesh_decoder;
+
+typedef struct pmesh_decoder_config {
+    pmesh_allocator allocator; /* default: malloc and free */
+    uint64_t max_memory;       /* bytes of the block; 0: 4 GiB */
+    uint32_t max_faces;        /* 0: 2^28 */
+} pmesh_decoder_config;
+
+PMESH_API pmesh_decoder_config pmesh_decoder_config_default(void);
+
+/*
+ * Makes a decoder; config NULL stands for the default. Returns PMESH_OK, or
+ * E_ARGUMENT or E_MEMORY with *out = NULL.
+ */
+PMESH_API pmesh_status pmesh_decoder_create(pmesh_decoder **out,
+                                            const pmesh_decoder_config *config);
+
+/* Frees everything; accepts NULL. */
+PMESH_API void pmesh_decoder_destroy(pmesh_decoder *dec);
+
+/*
+ * Gives the next bytes of a stream to the decoder. Safe on hostile input.
+ *
+ * Chunk boundaries carry no meaning: one call with 1000 bytes and 1000 calls
+ * with one byte leave the same state. No pointer into `data` is kept. The
+ * visible mesh does not change, except that it becomes the base mesh when that
+ * arrives: call refine() to see more.
+ *
+ * Returns PMESH_OK once the end of the file was read (further bytes are
+ * ignored), PMESH_NEED_DATA before. A negative status is final: later calls
+ * return it again, and the mesh stays readable and refinable as far as it was
+ * decoded: E_MAGIC, E_VERSION, E_CORRUPT, E_CHECKSUM, E_LIMIT, E_MEMORY.
+ */
+PMESH_API pmesh_status pmesh_decoder_feed(pmesh_decoder *dec, const void *data,
+                                          size_t size);
+
+/* Where feed() failed: byte offset of the chunk or record, and the rule. */
+typedef struct pmesh_decode_error {
+    pmesh_status status;
+    uint64_t offset;  /* bytes from the start of the stream */
+    const char *rule; /* "SPEC 5.3: ..." static text; "" if no error */
+} pmesh_decode_error;
+
+PMESH_API pmesh_decode_error pmesh_decoder_error(const pmesh_decoder *dec);
+
+/* All that the header tells; counts are those of full detail. */
+typedef struct pmesh_header {
+    uint32_t format_version;
+    uint64_t content_hash; /* names the content; equal files, equal hash */
+    uint64_t bytes;        /* the complete file */
+    pmesh_profile profile;
+    pmesh_placement placement;
+    pmesh_grid grid;
+    int32_t bounds[3];      /* largest grid coordinate of each axis */
+    uint32_t faces;
+    uint32_t mesh_vertices; /* distinct positions */
+    uint32_t vertices;      /* output vertices; = mesh_vertices without seams */
+    uint32_t base_faces, base_mesh_vertices, base_vertices;
+    uint32_t material_count;
+    uint32_t attribute_count;
+    pmesh_attribute attributes[PMESH_MAX_ATTRIBUTES];
+    uint32_t level_count;   /* levels[0] is the base mesh */
+    pmesh_level levels[PMESH_MAX_LEVELS];
+    uint64_t memory;        /* bytes of the decoder's block for this file */
+} pmesh_header;
+
+/* Copies the header. PMESH_NEED_DATA until it has arrived; else PMESH_OK. */
+PMESH_API pmesh_status pmesh_decoder_header(const pmesh_decoder *dec,
+                                            pmesh_header *out);
+
+/* How far decoding came. */
+typedef struct pmesh_progress_state {
+    uint64_t bytes;       /* consumed by complete chunks, from the start */
+    uint32_t faces;       /* decoded: refine() reaches up to here */
+    uint32_t levels;      /* complete levels, the base included */
+    int complete;         /* 1: the whole file was decoded */
+} pmesh_progress_state;
+
+PMESH_API pmesh_progress_state
+pmesh_decoder_progress(const pmesh_decoder *dec);
+
+/*
+ * Where to go: as fine as decoded within every limit given; 0 is no limit.
+ *   faces   at most this many (never below the base mesh)
+ *   error   the coarsest complete level whose error is at most this; model
+ *           units; if none is decoded, the finest
+ *   bytes   what the first `bytes` bytes of the file hold
+ */
+typedef struct pmesh_target {
+    uint32_t faces;
+    double error;
+    uint64_t bytes;
+} pmesh_target;
+
+typedef struct pmesh_range {
+    uint32_t first, count;
+} pmesh_range;
+
+/*
+ * What a refine() changed: upload these and nothing else. Sorted, disjoint,
+ * in elements (vertices, index triples); beyond the buffers' new ends nothing
+ * is listed.
+ */
+#define PMESH_MAX_RANGES 64
+typedef struct pmesh_changes {
+    uint32_t vertex_range_count, face_range_count;
+    pmesh_range vertices[PMESH_MAX_RANGES];
+    pmesh_range faces[PMESH_MAX_RANGES];
+} pmesh_changes;
+
+/*
+ * Moves the visible mesh to the target. target NULL: all that is decoded.
+ * changes: NULL or filled. Exact to one face (two where a split adds two).
+ * Returns PMESH_OK, or PMESH_NEED_DATA while no base mesh has been decoded.
+ */
+PMESH_API pmesh_status pmesh_decoder_refine(pmesh_decoder *dec,
+                                            const pmesh_target *target,
+                                            pmesh_changes *changes);
+
+/* The visible mesh; pointers are valid until the next feed() or refine(). */
+typedef struct pmesh_view {
+    uint32_t vertex_count; /* output vertices in use: a prefix of the file's */
+    uint32_t mesh_vertex_count;
+    uint32_t face_count;
+    const uint32_t *indices;   /* 3 per face, into the output vertices */
+    const uint32_t *positions_of; /* output vertex -> mesh vertex; NULL: same */
+    const int32_t *positions;  /* 3 grid coordinates per mesh vertex */
+    const uint16_t *values;    /* per output vertex: all attributes' coded
+                                  components, one after the other; or NULL */
+    uint32_t value_stride;     /* components per output vertex */
+    const uint32_t *materials; /* per face; NULL: all 0 */
+    float error;               /* of the finest complete level at or below */
+} pmesh_view;
+
+PMESH_API pmesh_status pmesh_decoder_mesh(const pmesh_decoder *dec,
+                                          pmesh_view *out);
+
+/*
+ * Dequantises into the caller's memory, one tuple per output vertex of the
+ * visible mesh, `stride` bytes apart (0: packed). The buffer must hold
+ * view.vertex_count tuples. Returns PMESH_OK, NEED_DATA, or E_ARGUMENT.
+ */
+PMESH_API pmesh_status pmesh_decoder_copy_positions(const pmesh_decoder *dec,
+                                                    float *dst, size_t stride);
+PMESH_API pmesh_status pmesh_decoder_copy_attribute(const pmesh_decoder *dec,
+                                                    uint32_t attribute,
+                                                    float *dst, size_t stride);
+
+/* Name of a material, "" if it has none; valid while the decoder lives. */
+PMESH_API const char *pmesh_decoder_material_name(const pmesh_decoder *dec,
+                                                  uint32_t material);
+
+/*
+ * Number of splits visible of the vertex tree and the parent of a mesh vertex
+ * (UINT32_MAX for base vertices): a geomorph slides a vertex from there.
+ */
+PMESH_API uint32_t pmesh_decoder_parent(const pmesh_decoder *dec,
+                                        uint32_t mesh_vertex);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * codec.h - the walk through a stream that encoder and decoder share: base
+ * mesh, then levels of vertex splits in blocks (SPEC 6).
+ *
+ * A level is decoded on the mesh that the level before left. Its vertices are
+ * visited breadth first; each has a flag, "splits", and if so a cut. A block is
+ * a run of this visit that contains a given number of splits; it holds first
+ * all of their connectivity, then all of their positions, then attributes.
+ * Behind a block its new vertices and faces are renumbered by importance, so
+ * that any prefix of them is a good mesh (SPEC 6.7).
+ *
+ * When encoding, an oracle answers what the stream will say; when decoding,
+ * the oracle is NULL. Nothing here allocates: pmesh_codec_layout() tells the
+ * size of each array, its owner provides them.
+ */
+#ifndef PMESH_CODEC_H
+#define PMESH_CODEC_H
+
+#include "format/coder.h"
+#include "format/mesh.h"
+#include "format/models.h"
+
+/* Visit state of a vertex within a level. */
+typedef enum pmesh_visit {
+    PMESH_UNVISITED = 0,
+    PMESH_KEPT = 1,     /* visited, does not split */
+    PMESH_PARENT = 2,   /* visited, has split */
+    PMESH_NEWBORN = 3,  /* made by a split of this level */
+    PMESH_GHOST = 4     /* what lies across a boundary */
+} pmesh_visit;
+
+/*
+ * The encoder's answers. Half-edges, vertices and faces are the codec's
+ * numbers. A key names a wedge in the encoder's own way: two corners have the
+ * same wedge if they have the same key.
+ */
+typedef struct pmesh_oracle {
+    void *user;
+    /* The base mesh in any numbering; filled in by pmesh_base_code(): of each
+     * of the codec's half-edges that of `base`, of each of base's vertices the
+     * codec's number (PMESH_NONE before). base_done() is told when they are
+     * complete; key, number, values and material are asked after that. */
+    const pmesh_mesh *base;
+    uint32_t *base_edge;
+    uint32_t *base_vertex;
+    void (*base_done)(void *user);
+
+    bool (*splits)(void *user, uint32_t vertex);
+    void (*cut)(void *user, uint32_t vertex, const pmesh_ring *ring,
+                pmesh_cut *cut);
+    /* Told behind each split: the child, its first new face and their count. */
+    void (*split_done)(void *user, uint32_t child, uint32_t face,
+                       uint32_t count);
+    void (*position)(void *user, uint32_t vertex, int32_t out[3]);
+    uint32_t (*key)(void *user, uint32_t half_edge);
+    uint32_t (*number)(void *user, uint32_t key); /* PMESH_NONE: has none */
+    void (*set_number)(void *user, uint32_t key, uint32_t wedge);
+    const uint16_t *(*values)(void *user, uint32_t wedge);
+    uint32_t (*material)(void *user, uint32_t face);
+} pmesh_oracle;
+
+/* The block being coded: what it appends to the mesh. */
+typedef struct pmesh_block {
+    uint32_t vertex, vertex_count; /* first, and how many */
+    uint32_t face, face_count;
+    uint32_t wedge, wedge_count;
+} pmesh_block;
+
+/* What the arrays of a codec are sized by; from the header. */
+typedef struct pmesh_codec_sizes {
+    uint32_t vertices, faces, wedges; /* at full detail */
+    uint32_t base_faces;
+    uint32_t value_count; /* coded components of a wedge; 0: no attributes */
+    uint32_t material_count;
+    bool moves;            /* optimal placement: a split moves its parent */
+    uint32_t block_splits; /* in the largest block */
+    uint32_t block_wedges; /* made by the richest block */
+} pmesh_codec_sizes;
+
+typedef struct pmesh_codec {
+    pmesh_codec_sizes sizes;
+    pmesh_mesh mesh;
+    pmesh_models models;
+    int32_t bounds[3]; /* largest coordinate of each axis */
+    uint32_t component_max[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS];
+    const char *rule; /* what a negative status was about */
+    uint64_t part_size[3]; /* when encoding, bytes so far: connectivity,
+                              positions, attributes */
+
+    /* Of the level. */
+    uint32_t *order;  /* per vertex: the visit's order */
+    uint8_t *state;   /* per vertex: pmesh_visit */
+    uint32_t *degree; /* per vertex: neighbours */
+    uint32_t level_vertex_count, level_next;
+
+    /* Of the vertex tree: what there is once a vertex is split off. */
+    uint32_t *face_end;  /* per vertex */
+    uint32_t *wedge_end; /* per vertex; NULL without attributes */
+
+    uint32_t wedge_limit; /* wedges that the base or the block may make */
+
+    /* Of the block; while it is coded its numbers are in coding order. */
+    pmesh_block block;
+    int32_t (*unsplit)[3];  /* per split, if parents move: where the parent was */
+    uint32_t *child_face;   /* per split: its first new face */
+    uint32_t *importance;   /* per split */
+    uint32_t *child_order;  /* per split, afterwards: its place in coding
+                               order */
+    uint32_t *face_order;   /* per face of the block, likewise */
+    uint32_t *wedge_order;  /* per wedge of the block, likewise */
+    uint32_t *wedge_corner; /* per wedge: the half-edge it was made for */
+    uint32_t *scratch;      /* see rank.c */
+    uint32_t *base_scratch; /* pmesh_base_scratch() numbers, for the base */
+} pmesh_codec;
+
+/*
+ * Lays the arrays out in `block` (aligned for any object, zeroed) and makes an
+ * empty mesh and fresh models. Returns the bytes needed; with block NULL does
+ * nothing else. The sizes must be within the limits of layout.h.
+ */
+uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *sizes,
+                          void *block);
+
+/* Sets component_max from the attributes' bits. */
+void pmesh_codec_limit_values(pmesh_codec *c, const pmesh_attribute *attributes,
+                              uint32_t count);
+
+/* Hash table of a base mesh's half-edges: a power of two, more than twice
+ * their number. */
+uint64_t pmesh_base_scratch(uint32_t faces);
+
+/* Codes the base mesh into the empty mesh of `c`: `vertices`, `faces` and
+ * `wedges` as the header says (when encoding, wedges is an upper bound). */
+pmesh_status pmesh_base_code(pmesh_codec *c, pmesh_coder *coder,
+                             const pmesh_oracle *oracle, uint32_t vertices,
+                             uint32_t faces, uint32_t wedges);
+
+/* Starts a level on the current mesh. */
+void pmesh_level_begin(pmesh_codec *c);
+
+/*
+ * Codes the next `split_count` splits of the level and renumbers what they
+ * made. Afterwards block, child_order, face_order, wedge_order and unsplit tell
+ * what was appended. On a negative status the mesh is not usable any more.
+ */
+pmesh_status pmesh_block_code(pmesh_codec *c, pmesh_coder *coder,
+                              const pmesh_oracle *oracle,
+                              uint32_t split_count);
+
+/* The wedge that a new face's corner has when the face is born in the split of
+ * `child`: vertices that split off later are still their parents then. */
+static inline uint32_t pmesh_birth_wedge(const pmesh_mesh *m, uint32_t h,
+                                         uint32_t child)
+{
+    const uint32_t v = m->vertex[h];
+    if (m->wedge)
+        return v > child ? m->wedge_parent[m->wedge[h]] : m->wedge[h];
+    return v > child ? m->parent[v] : v;
+}
+
+#endif

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * cut.h - codes where a ring is cut (SPEC 6.4): every legal cut gets a cost
+ * from the ring's shape and state, and the stream holds the rank of the true
+ * one, cheapest first.
+ */
+#ifndef PMESH_CUT_H
+#define PMESH_CUT_H
+
+#include "format/codec.h"
+
+/* Codes the cut of `v`, whose ring is given; what comes out is legal. */
+void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
+                    const pmesh_ring *ring, pmesh_cut *cut);
+
+#endif

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * mesh.h - the mesh that encoder and decoder refine in step: half-edge
+ * connectivity of an oriented 2-manifold with boundary, and the vertex split.
+ *
+ * Half-edge h = 3 * face + k runs from corner k to corner k + 1 (mod 3) of its
+ * face; it starts at vertex[h]. twin[h] runs the other way in the neighbouring
+ * face, or is PMESH_NONE at a boundary. first[v] is a half-edge that starts at
+ * v: at a boundary the one without a twin, so that turning counter-clockwise
+ * from it meets every face of v.
+ *
+ *            x1                   turning counter-clockwise around v:
+ *          / |                      h -> twin[prev(h)]
+ *        x2--v--x0                clockwise:
+ *                                   h -> next(twin[h])
+ *
+ * Storage belongs to the caller; nothing here allocates.
+ */
+#ifndef PMESH_MESH_H
+#define PMESH_MESH_H
+
+#include <stdbool.h>
+
+#include "format/layout.h"
+#include "format/pmesh.h"
+
+typedef struct pmesh_mesh {
+    uint32_t vertex_count, vertex_capacity;
+    uint32_t face_count, face_capacity;
+    uint32_t wedge_count, wedge_capacity;
+
+    uint32_t *vertex; /* per half-edge */
+    uint32_t *twin;   /* per half-edge */
+    uint32_t *first;  /* per vertex */
+    uint32_t *parent; /* per vertex: split from, PMESH_NONE in the base */
+    int32_t (*position)[3];
+
+    /* Attributes: a wedge is a vertex with one tuple of values. Without
+     * attributes (value_count 0) wedge is NULL and wedges are vertices. */
+    uint32_t *wedge;        /* per half-edge */
+    uint32_t *wedge_vertex; /* per wedge */
+    uint32_t *wedge_parent; /* per wedge: takes its place one level coarser */
+    uint16_t *value;        /* value_count per wedge */
+    uint32_t value_count;
+    uint32_t *material; /* per face, NULL if there is only one */
+    uint32_t material_count;
+} pmesh_mesh;
+
+static inline uint32_t pmesh_next(uint32_t h)
+{
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+static inline uint32_t pmesh_prev(uint32_t h)
+{
+    return h % 3 == 0 ? h + 2 : h - 1;
+}
+
+/* The next half-edge of the same start, counter-clockwise; PMESH_NONE behind
+ * the last face of a boundary vertex. */
+static inline uint32_t pmesh_turn_left(const pmesh_mesh *m, uint32_t h)
+{
+    return m->twin[pmesh_prev(h)];
+}
+
+/*
+ * The neighbours of v, counter-clockwise from first[v]. Face i lies between
+ * neighbours i and i + 1. At a boundary the last neighbour has no face behind
+ * it, and the ring is closed by the ghost, which is not listed but counts.
+ */
+typedef struct pmesh_ring {
+    uint32_t count;      /* neighbours */
+    uint32_t face_count; /* count, or count - 1 at a boundary */
+    bool open;           /* v is on the boundary */
+    uint32_t edge[PMESH_MAX_RING];   /* per face: the half-edge from v */
+    uint32_t vertex[PMESH_MAX_RING]; /* per neighbour */
+} pmesh_ring;
+
+/* False, with the ring unusable, if neighbours and ghost exceed the bound. */
+bool pmesh_ring_gather(const pmesh_mesh *m, uint32_t v, pmesh_ring *ring);
+
+/*
+ * Where a ring is cut: the new vertex takes the faces first .. end - 1 (taken
+ * cyclically), between the wings ring->vertex[first] and ring->vertex[end].
+ * PMESH_NONE as a wing is the ghost: the split runs along the boundary and
+ * adds one face instead of two.
+ */
+typedef struct pmesh_cut {
+    uint32_t first, end;
+} pmesh_cut;
+
+/* True if the cut is one that SPEC 6.3 allows for this ring. */
+bool pmesh_cut_legal(const pmesh_ring *ring, pmesh_cut cut);
+
+/*
+ * Splits v: appends vertex u = vertex_count, moves the faces of the cut to it,
+ * and appends one face for each wing, (v, a, u) first, then (v, u, b).
+ *
+ *        b                b           u's ring is a, ..., b, v.
+ *      / | \            / | \         Position, wedges and material of what is
+ *     |  v  |    ->    |  v--u |      new are left to the caller.
+ *      \ | /            \ | /
+ *        a                a
+ *
+ * The ring must be v's, the cut legal, and the capacities sufficient.
+ */
+void pmesh_mesh_split(pmesh_mesh *m, uint32_t v, const pmesh_ring *ring,
+                      pmesh_cut cut);
+
+/* NULL if connectivity is sound, else the rule that is broken: twins mutual and
+ * opposite, first[] as promised, every face of a vertex in its one fan, three
+ * different vertices per face. For tests and for a decoded base mesh; `seen`
+ * holds 3 * face_count bytes. */
+const char *pmesh_mesh_check(const pmesh_mesh *m, uint8_t *seen);
+
+#endif

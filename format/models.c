@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+#include "format/models.h"
+
+/* Expected residuals before anything was seen, as fractions of 4096. */
+enum { ALONG_START = 900, ACROSS_START = 400 };
+
+#define INIT_BITS(array) \
+    pmesh_bits_init((pmesh_bit *)(array), sizeof(array) / sizeof(pmesh_bit))
+
+static void residual_init(pmesh_residual_model *m)
+{
+    INIT_BITS(m->zero);
+    INIT_BITS(m->sign);
+    INIT_BITS(m->unary);
+    INIT_BITS(m->low);
+    pmesh_number_init(&m->escape);
+}
+
+static void wedge_init(pmesh_wedge_models *m)
+{
+    INIT_BITS(m->ordinary);
+    INIT_BITS(m->seam);
+    INIT_BITS(m->corner);
+    INIT_BITS(m->choice);
+    INIT_BITS(m->material);
+    pmesh_number_init(&m->pick);
+}
+
+void pmesh_models_init(pmesh_models *m)
+{
+    INIT_BITS(m->flag);
+    INIT_BITS(m->cut);
+    INIT_BITS(m->base);
+    INIT_BITS(m->value_sign);
+    pmesh_bits_init(&m->base_sign, 1);
+    pmesh_number_init(&m->base_vertex);
+    pmesh_number_init(&m->base_position);
+    wedge_init(&m->wedge);
+    for (int i = 0; i < PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS; i++)
+        for (int k = 0; k < 2; k++)
+            pmesh_number_init(&m->value[i][k]);
+    for (int which = 0; which < 2; which++) {
+        residual_init(&m->residual[which]);
+        for (int i = 0; i < PMESH_SIZE_CLASSES; i++)
+            for (int k = 0; k < 3; k++) {
+                m->along[which][i][k] = (pmesh_mean){ ALONG_START, 0 };
+                m->across[which][i][k] = (pmesh_mean){ ACROSS_START, 0 };
+            }
+    }
+}

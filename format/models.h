@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * models.h - every adaptive model of a stream. They start as pmesh_models_init
+ * leaves them and live from the base mesh to the last block.
+ */
+#ifndef PMESH_MODELS_H
+#define PMESH_MODELS_H
+
+#include "format/coder.h"
+#include "format/pmesh.h"
+
+enum {
+    PMESH_FLAG_CONTEXTS = 8 * 6 * 5 * 7,
+    PMESH_CUT_RANKS = 10,
+    PMESH_CUT_GAPS = 12,
+    PMESH_SCALES = 60,    /* half octaves of an expected residual */
+    PMESH_UNARY = 14,
+    PMESH_SIZE_CLASSES = 24
+};
+
+/* Signed residuals of an expected size (SPEC 6.5). */
+typedef struct pmesh_residual_model {
+    pmesh_bit zero[PMESH_SCALES][3];
+    pmesh_bit sign[PMESH_SCALES][3];
+    pmesh_bit unary[PMESH_SCALES][PMESH_UNARY];
+    pmesh_bit low[PMESH_SCALES][3];
+    pmesh_number escape;
+} pmesh_residual_model;
+
+/* Mean size of residuals so far, as a fraction of the ring's size, in 1/4096;
+ * `uses` as in pmesh_bit. */
+typedef struct pmesh_mean {
+    uint32_t value;
+    uint32_t uses;
+} pmesh_mean;
+
+typedef struct pmesh_wedge_models {
+    pmesh_bit ordinary[3];
+    pmesh_bit seam[4];
+    pmesh_bit corner[4];
+    pmesh_bit choice[8];
+    pmesh_bit material[4];
+    pmesh_number pick;
+} pmesh_wedge_models;
+
+typedef struct pmesh_models {
+    pmesh_bit flag[PMESH_FLAG_CONTEXTS];
+    pmesh_bit cut[2][PMESH_CUT_RANKS][PMESH_CUT_GAPS];
+    pmesh_residual_model residual[2]; /* of a child, of a moved parent */
+    pmesh_mean across[2][PMESH_SIZE_CLASSES][3];
+    pmesh_mean along[2][PMESH_SIZE_CLASSES][3];
+    pmesh_bit base[3][2];
+    pmesh_number base_vertex;
+    pmesh_number base_position;
+    pmesh_bit base_sign;
+    pmesh_wedge_models wedge;
+    pmesh_number value[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS][2];
+    pmesh_bit value_sign[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS][2];
+} pmesh_models;
+
+void pmesh_models_init(pmesh_models *m);
+
+#endif

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT */
+#include "format/predict.h"
+
+#include "format/tables.h"
+
+enum { FRACTION = 16, NORMAL_ONE = 16384, WEIGHT_ONE = 256 };
+
+uint32_t pmesh_isqrt(uint64_t value)
+{
+    uint64_t root = 0;
+    for (uint64_t bit = (uint64_t)1 << 62; bit; bit >>= 2) {
+        if (value >= root + bit) {
+            value -= root + bit;
+            root = (root >> 1) + bit;
+        } else {
+            root >>= 1;
+        }
+    }
+    return (uint32_t)root;
+}
+
+/* The ring of x relative to a base point, in 1/16 steps: |coordinates| below
+ * 2^28 for 24-bit grids. */
+typedef struct star {
+    uint32_t count;
+    bool open;
+    int64_t mean[3];
+    int64_t point[PMESH_MAX_RING][3];
+} star;
+
+static void star_make(star *s, const pmesh_codec *c, const pmesh_ring *ring,
+                      const int32_t base[3])
+{
+    int64_t sum[3] = { 0, 0, 0 };
+    s->count = ring->count;
+    s->open = ring->open;
+    for (uint32_t i = 0; i < s->count; i++) {
+        const int32_t *p = c->mesh.position[ring->vertex[i]];
+        for (int k = 0; k < 3; k++) {
+            s->point[i][k] = (int64_t)(p[k] - base[k]) * FRACTION;
+            sum[k] += s->point[i][k];
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        s->mean[k] = sum[k] / s->count;
+}
+
+/* Sum of the face normals around the mean, scaled to length 16384. A cross
+ * product has components below 2^59, 48 of them would overflow: the points are
+ * first brought below 2^26. */
+static void star_normal(const star *s, int32_t normal[3])
+{
+    int64_t q[PMESH_MAX_RING][3], largest = 0, sum[3] = { 0, 0, 0 };
+    for (uint32_t i = 0; i < s->count; i++)
+        for (int k = 0; k < 3; k++) {
+            q[i][k] = s->point[i][k] - s->mean[k];
+            largest |= q[i][k] < 0 ? -q[i][k] : q[i][k];
+        }
+    int64_t divisor = 1;
+    while (largest / divisor >= (int64_t)1 << 26)
+        divisor *= 2;
+    const uint32_t faces = s->open ? s->count - 1 : s->count;
+    for (uint32_t i = 0; i < s->count; i++)
+        for (int k = 0; k < 3; k++)
+            q[i][k] /= divisor;
+    for (uint32_t i = 0; i < faces; i++) {
+        const int64_t *a = q[i], *b = q[i + 1 < s->count ? i + 1 : 0];
+        for (int k = 0; k < 3; k++) {
+            const int y = k == 2 ? 0 : k + 1, z = k == 0 ? 2 : k - 1;
+            sum[k] += a[y] * b[z] - a[z] * b[y];
+        }
+    }
+
+    largest = 0;
+    for (int k = 0; k < 3; k++)
+        largest |= sum[k] < 0 ? -sum[k] : sum[k];
+    divisor = 1;
+    while (largest / divisor >= (int64_t)1 << 30)
+        divisor *= 2;
+    uint64_t square = 0;
+    for (int k = 0; k < 3; k++) {
+        sum[k] /= divisor;
+        square += (uint64_t)(sum[k] * sum[k]);
+    }
+    const int64_t length = pmesh_isqrt(square);
+    for (int k = 0; k < 3; k++)
+        normal[k] = length ? (int32_t)(sum[k] * NORMAL_ONE / length) : 0;
+}
+
+static void star_size(const star *s, const int32_t normal[3],
+                      pmesh_prediction *out)
+{
+    uint64_t square = 0, height = 0;
+    for (uint32_t i = 0; i < s->count; i++) {
+        int64_t h = 0;
+        for (int k = 0; k < 3; k++) {
+            const int64_t d = s->point[i][k] - s->mean[k];
+            square += (uint64_t)(d * d);
+            h += d / FRACTION * normal[k];
+        }
+        height += (uint64_t)(h < 0 ? -h : h) / (NORMAL_ONE / FRACTION);
+    }
+    out->size = pmesh_isqrt(square / s->count);
+    if (out->size < FRACTION)
+        out->size = FRACTION;
+
+    /* Mean height over the mean plane against the size: 2 classes an octave
+     * from 1/256 on. */
+    const uint64_t mean_height = height / s->count;
+    uint8_t rough = 0;
+    uint64_t limit = (uint64_t)out->size;
+    while (rough < 13 && mean_height * 256 >= limit) {
+        limit = rough & 1 ? limit / 3 * 4 + 1 : limit * 3 / 2;
+        rough++;
+    }
+    out->rough = rough;
+}
+
+/* Mean over the ring of (mean of a member's other neighbours - member): how
+ * the surface bends around here. */
+static void bend(const pmesh_codec *c, const pmesh_ring *ring, uint32_t x,
+                 int64_t out[3])
+{
+    const pmesh_mesh *m = &c->mesh;
+    int64_t sum[3] = { 0, 0, 0 };
+    int64_t used = 0;
+    for (uint32_t i = 0; i < ring->count; i++) {
+        const uint32_t y = ring->vertex[i];
+        int64_t part[3] = { 0, 0, 0 };
+        int64_t count = 0;
+        uint32_t h = m->first[y];
+        const uint32_t start = h;
+        do {
+            const uint32_t z = m->vertex[pmesh_next(h)];
+            if (z != x) {
+                for (int k = 0; k < 3; k++)
+                    part[k] += m->position[z][k];
+                count++;
+            }
+            h = pmesh_turn_left(m, h);
+        } while (h != PMESH_NONE && h != start && count < PMESH_MAX_RING);
+        if (count < 2 || h == PMESH_NONE)
+            continue;
+        for (int k = 0; k < 3; k++)
+            sum[k] += part[k] * FRACTION / count -
+                      (int64_t)m->position[y][k] * FRACTION;
+        used++;
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = used ? sum[k] / used : 0;
+}
+
+static uint32_t index_of(const pmesh_ring *ring, uint32_t vertex)
+{
+    uint32_t i = 0;
+    while (i + 1 < ring->count && ring->vertex[i] != vertex)
+        i++;
+    return i;
+}
+
+/* The terms of the correction, relative to the ring's mean. */
+static void make_terms(const pmesh_codec *c, const star *s,
+                       const pmesh_ring *ring, uint32_t x, uint32_t partner,
+                       int64_t term[PMESH_PREDICT_TERMS][3])
+{
+    const uint32_t n = s->count, at = index_of(ring, partner);
+    uint32_t a = at + 1 < n ? at + 1 : 0, b = at > 0 ? at - 1 : n - 1;
+    if (s->open) { /* the boundary says more than the wings */
+        a = 0;
+        b = n - 1;
+    }
+    for (int k = 0; k < 3; k++) {
+        term[0][k] = -s->mean[k]; /* the partner is the base point */
+        term[1][k] = (s->point[a][k] + s->point[b][k]) / 2 - s->mean[k];
+    }
+    bend(c, ring, x, term[2]);
+}
+
+/* A ring beyond the bound: splits of its neighbours made it so large. */
+static void predict_blindly(const int32_t at[3], pmesh_prediction *out)
+{
+    *out = (pmesh_prediction){ .size = 64 * FRACTION, .ring_class = 7,
+                               .unknown = 2, .rough = 13 };
+    for (int k = 0; k < 3; k++)
+        out->position[k] = (int64_t)at[k] * FRACTION;
+}
+
+static uint8_t ring_class(const pmesh_ring *ring)
+{
+    if (ring->open)
+        return PMESH_PREDICT_CLASSES - 1;
+    const uint32_t n = ring->count < 3 ? 3 : ring->count;
+    return (uint8_t)(n < 10 ? n - 3 : 7);
+}
+
+void pmesh_predict(const pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
+                   uint32_t partner, const int32_t partner_position[3],
+                   uint32_t provisional, pmesh_prediction *out)
+{
+    pmesh_ring ring;
+    star s;
+    int64_t term[PMESH_PREDICT_TERMS][3];
+
+    if (!pmesh_ring_gather(&c->mesh, x, &ring)) {
+        predict_blindly(partner_position, out);
+        return;
+    }
+    star_make(&s, c, &ring, partner_position);
+    star_normal(&s, out->normal);
+    star_size(&s, out->normal, out);
+    make_terms(c, &s, &ring, x, partner, term);
+
+    uint32_t unknown = 0;
+    for (uint32_t i = 0; i < ring.count; i++)
+        unknown += ring.vertex[i] >= provisional && ring.vertex[i] != partner;
+    out->unknown = (uint8_t)(unknown < 2 ? unknown : 2);
+    out->ring_class = ring_class(&ring);
+
+    const int16_t(*w)[2] =
+        pmesh_predict_weight[kind][out->ring_class][out->unknown];
+    int64_t along[3] = { 0, 0, 0 }, across = 0;
+    for (int t = 0; t < PMESH_PREDICT_TERMS; t++) {
+        int64_t height = 0;
+        for (int k = 0; k < 3; k++) {
+            along[k] += w[t][0] * term[t][k];
+            height += term[t][k] * out->normal[k];
+        }
+        across += (w[t][1] - w[t][0]) * (height / NORMAL_ONE);
+    }
+    for (int k = 0; k < 3; k++)
+        out->position[k] = (int64_t)partner_position[k] * FRACTION +
+                           s.mean[k] + along[k] / WEIGHT_ONE +
+                           across * out->normal[k] / NORMAL_ONE / WEIGHT_ONE;
+}

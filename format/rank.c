@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: MIT */
+#include "format/rank.h"
+
+#include <string.h>
+
+enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS };
+
+uint64_t pmesh_rank_scratch(const pmesh_codec_sizes *sizes)
+{
+    const uint64_t splits = sizes->block_splits, wedges = sizes->block_wedges;
+    /* The largest user: three numbers for each of six half-edges a split, or a
+     * wedge's map, its three numbers and its values. */
+    const uint64_t for_faces = 20 * splits;
+    const uint64_t for_wedges = wedges * (4 + sizes->value_count);
+    return (for_faces > for_wedges ? for_faces : for_wedges) + 2 * splits;
+}
+
+/* A 16-bit key that grows with value: 5 bits of exponent, 11 of mantissa. */
+static uint32_t float_key(uint32_t value)
+{
+    uint32_t exponent = 0;
+    while (value >= 4096) {
+        value >>= 1;
+        exponent++;
+    }
+    return value < 2048 ? value : ((exponent + 1) << 11) + (value - 2048);
+}
+
+/* child_order = the splits, most important first: a stable radix sort on the
+ * complement of the key, two digits. */
+static void sort_children(pmesh_codec *c)
+{
+    const uint32_t n = c->block.vertex_count;
+    uint32_t *source = c->scratch, *target = c->child_order;
+    for (uint32_t i = 0; i < n; i++) {
+        c->importance[i] = 0xffff - float_key(c->importance[i]);
+        source[i] = i;
+    }
+    for (unsigned shift = 0; shift < 2 * DIGIT_BITS; shift += DIGIT_BITS) {
+        uint32_t start[DIGITS + 1] = { 0 };
+        for (uint32_t i = 0; i < n; i++)
+            start[(c->importance[i] >> shift & (DIGITS - 1)) + 1]++;
+        for (uint32_t d = 0; d < DIGITS; d++)
+            start[d + 1] += start[d];
+        for (uint32_t i = 0; i < n; i++) {
+            const uint32_t k = source[i];
+            target[start[c->importance[k] >> shift & (DIGITS - 1)]++] = k;
+        }
+        uint32_t *swap = source;
+        source = target;
+        target = swap;
+    }
+    memcpy(c->child_order, source, n * sizeof *source);
+}
+
+/* Reorders `count` items of `size` numbers: item i comes from order[i]. */
+static void permute(uint32_t *items, uint32_t count, uint32_t size,
+                    const uint32_t *order, uint32_t *scratch)
+{
+    memcpy(scratch, items, (size_t)count * size * sizeof *items);
+    for (uint32_t i = 0; i < count; i++)
+        memcpy(items + (size_t)i * size, scratch + (size_t)order[i] * size,
+               size * sizeof *items);
+}
+
+static void permute_positions(int32_t (*items)[3], uint32_t count,
+                              const uint32_t *order, uint32_t *scratch)
+{
+    int32_t(*copy)[3] = (int32_t(*)[3])scratch;
+    memcpy(copy, items, count * sizeof *items);
+    for (uint32_t i = 0; i < count; i++)
+        memcpy(items[i], copy[order[i]], sizeof *items);
+}
+
+/* Names the children by rank in every half-edge that starts at them. */
+static void rename_children(pmesh_codec *c)
+{
+    pmesh_mesh *m = &c->mesh;
+    const uint32_t first = c->block.vertex, n = c->block.vertex_count;
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t start = m->first[first + c->child_order[i]];
+        uint32_t h = start;
+        do {
+            m->vertex[h] = first + i;
+            h = pmesh_turn_left(m, h);
+        } while (h != PMESH_NONE && h != start);
+    }
+    permute(m->first + first, n, 1, c->child_order, c->scratch);
+    permute(m->parent + first, n, 1, c->child_order, c->scratch);
+    permute(c->degree + first, n, 1, c->child_order, c->scratch);
+    permute_positions(m->position + first, n, c->child_order, c->scratch);
+    if (c->sizes.moves)
+        permute_positions(c->unsplit, n, c->child_order, c->scratch);
+}
+
+/* face_order from child_order, and face_end; uses child_face in coding order
+ * and leaves it in the new order and numbering. */
+static void order_faces(pmesh_codec *c)
+{
+    const pmesh_block *b = &c->block;
+    uint32_t face = 0, *start = c->scratch;
+    for (uint32_t i = 0; i < b->vertex_count; i++) {
+        const uint32_t k = c->child_order[i];
+        const uint32_t end = k + 1 < b->vertex_count
+                                 ? c->child_face[k + 1]
+                                 : b->face + b->face_count;
+        start[i] = b->face + face;
+        for (uint32_t f = c->child_face[k]; f < end; f++)
+            c->face_order[face++] = f - b->face;
+        c->face_end[b->vertex + i] = b->face + face;
+    }
+    memcpy(c->child_face, start, b->vertex_count * sizeof *start);
+}
+
+static void rename_faces(pmesh_codec *c)
+{
+    pmesh_mesh *m = &c->mesh;
+    const uint32_t begin = c->block.face, n = c->block.face_count;
+    const uint32_t edge = 3 * begin;
+    uint32_t *now = c->scratch + 6 * (size_t)n, *scratch = c->scratch;
+
+    for (uint32_t i = 0; i < n; i++)
+        now[c->face_order[i]] = begin + i;
+    permute(m->vertex + edge, n, 3, c->face_order, scratch);
+    permute(m->twin + edge, n, 3, c->face_order, scratch);
+    if (m->wedge)
+        permute(m->wedge + edge, n, 3, c->face_order, scratch);
+    if (m->material)
+        permute(m->material + begin, n, 1, c->face_order, scratch);
+
+    for (uint32_t h = edge; h < edge + 3 * n; h++) {
+        const uint32_t t = m->twin[h];
+        if (t == PMESH_NONE)
+            continue;
+        if (t >= edge)
+            m->twin[h] = 3 * now[t / 3 - begin] + t % 3;
+        else
+            m->twin[t] = h;
+    }
+    /* first[] may lie in a new face; such vertices have a corner there. A new
+     * number can equal another's old one, so mark what is done by order: the
+     * old number of h tells whether first[] meant it. */
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t k = 0; k < 3; k++)
+            scratch[3 * c->face_order[i] + k] = m->vertex[edge + 3 * i + k];
+    for (uint32_t old = 0; old < 3 * n; old++) {
+        const uint32_t v = scratch[old];
+        scratch[3 * n + old] = m->first[v] == edge + old;
+    }
+    for (uint32_t old = 0; old < 3 * n; old++)
+        if (scratch[3 * n + old])
+            m->first[scratch[old]] = 3 * now[old / 3] + old % 3;
+}
+
+/* Gives w a number if it is the block's and has none. */
+static void count_wedge(uint32_t *number, const pmesh_block *b, uint32_t w,
+                        uint32_t *next)
+{
+    if (w != PMESH_NONE && w >= b->wedge && number[w - b->wedge] == PMESH_NONE)
+        number[w - b->wedge] = (*next)++;
+}
+
+/* Wedges in the order in which the splits, by rank, first show them. */
+static void number_wedges(pmesh_codec *c, uint32_t *number)
+{
+    const pmesh_mesh *m = &c->mesh;
+    const pmesh_block *b = &c->block;
+    uint32_t next = b->wedge;
+    for (uint32_t i = 0; i < b->wedge_count; i++)
+        number[i] = PMESH_NONE;
+    for (uint32_t u = b->vertex; u < b->vertex + b->vertex_count; u++) {
+        const uint32_t face = c->child_face[u - b->vertex];
+        for (uint32_t h = 3 * face; h < 3 * c->face_end[u]; h++)
+            count_wedge(number, b, pmesh_birth_wedge(m, h, u), &next);
+        uint32_t h = m->first[u];
+        do {
+            if (h < 3 * face)
+                count_wedge(number, b, m->wedge[h], &next);
+            h = pmesh_turn_left(m, h);
+        } while (h != PMESH_NONE && h != m->first[u]);
+        c->wedge_end[u] = next;
+    }
+    /* Some are seen only in orders that did not happen. */
+    for (uint32_t i = 0; i < b->wedge_count; i++)
+        count_wedge(number, b, b->wedge + i, &next);
+    c->wedge_end[b->vertex + b->vertex_count - 1] = next;
+}
+
+static uint32_t renamed(const uint32_t *number, const pmesh_block *b,
+                        uint32_t w)
+{
+    return w == PMESH_NONE || w < b->wedge ? w : number[w - b->wedge];
+}
+
+static void permute_values(pmesh_codec *c, uint32_t *scratch)
+{
+    const pmesh_block *b = &c->block;
+    const uint32_t n = c->mesh.value_count;
+    uint16_t *copy = (uint16_t *)scratch;
+    uint16_t *value = c->mesh.value + (size_t)b->wedge * n;
+    memcpy(copy, value, (size_t)b->wedge_count * n * sizeof *copy);
+    for (uint32_t i = 0; i < b->wedge_count; i++)
+        memcpy(value + (size_t)i * n, copy + (size_t)c->wedge_order[i] * n,
+               n * sizeof *value);
+}
+
+static void rename_wedges(pmesh_codec *c)
+{
+    pmesh_mesh *m = &c->mesh;
+    const pmesh_block *b = &c->block;
+    uint32_t *number = c->scratch, *scratch = c->scratch + b->wedge_count;
+
+    number_wedges(c, number);
+    for (uint32_t i = 0; i < b->wedge_count; i++)
+        c->wedge_order[number[i] - b->wedge] = i;
+    /* Corners that may have a wedge of the block: those of its faces, and of
+     * the faces around its vertices. */
+    for (uint32_t h = 3 * b->face; h < 3 * (b->face + b->face_count); h++)
+        m->wedge[h] = renamed(number, b, m->wedge[h]);
+    for (uint32_t u = b->vertex; u < b->vertex + b->vertex_count; u++) {
+        uint32_t h = m->first[u];
+        do {
+            if (h < 3 * b->face)
+                m->wedge[h] = renamed(number, b, m->wedge[h]);
+            h = pmesh_turn_left(m, h);
+        } while (h != PMESH_NONE && h != m->first[u]);
+    }
+    permute(m->wedge_vertex + b->wedge, b->wedge_count, 1, c->wedge_order,
+            scratch);
+    permute(m->wedge_parent + b->wedge, b->wedge_count, 1, c->wedge_order,
+            scratch);
+    for (uint32_t w = b->wedge; w < b->wedge + b->wedge_count; w++)
+        m->wedge_parent[w] = renamed(number, b, m->wedge_parent[w]);
+    permute_values(c, scratch);
+}
+
+void pmesh_block_rank(pmesh_codec *c)
+{
+    pmesh_block *b = &c->block;
+    if (b->vertex_count == 0)
+        return;
+    sort_children(c);
+    rename_children(c);
+    order_faces(c);
+    rename_faces(c);
+    if (c->mesh.wedge) {
+        rename_wedges(c);
+        /* wedge_vertex named children in coding order. */
+        for (uint32_t u = b->vertex; u < b->vertex + b->vertex_count; u++) {
+            uint32_t h = c->mesh.first[u];
+            do {
+                c->mesh.wedge_vertex[c->mesh.wedge[h]] = u;
+                h = pmesh_turn_left(&c->mesh, h);
+            } while (h != PMESH_NONE && h != c->mesh.first[u]);
+        }
+    }
+}

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT */
+#include "format/residual.h"
+
+enum {
+    FRACTION = 16,
+    ONE = 16384,       /* of normals and of variances relative to `along` */
+    MEAN_ONE = 4096,   /* of pmesh_mean */
+    MEAN_USES = 60,
+    LEAST_RATIO = 128, /* across is taken as along / 128 at least */
+    LOW_MODELS = 3
+};
+
+/* Half octaves: 2 log2(value), for value >= 1. */
+static unsigned half_octave(uint32_t value)
+{
+    unsigned n = 0;
+    uint64_t square = (uint64_t)value * value;
+    while (square >>= 1)
+        n++;
+    return n < PMESH_SCALES ? n : PMESH_SCALES - 1;
+}
+
+/* Codes value - round(mean) with models chosen by the expected deviation; mean
+ * and deviation in 1/16. */
+static int64_t code_coordinate(pmesh_coder *coder, pmesh_residual_model *m,
+                               int64_t mean, uint32_t deviation, int64_t value)
+{
+    const unsigned scale = half_octave(deviation ? deviation : 1);
+    const int64_t biased = mean + FRACTION / 2;
+    const int64_t center = biased >= 0 ? biased / FRACTION
+                                       : -((-biased + FRACTION - 1) / FRACTION);
+    const int64_t part = mean - center * FRACTION; /* -8 .. 7 */
+    const unsigned lean = part < -2 ? 0 : part > 2 ? 2 : 1;
+    const int64_t r = value - center;
+
+    if (!pmesh_code_bit(coder, &m->zero[scale][lean], r != 0))
+        return center;
+    const unsigned negative = pmesh_code_bit(coder, &m->sign[scale][lean],
+                                             r < 0);
+    const uint64_t size = (uint64_t)(r < 0 ? -r : r) - 1;
+
+    /* Golomb with bins of half the deviation: deviation is 2^(scale/2 - 4). */
+    const unsigned shift = scale > 11 ? scale / 2 - 5 : 0;
+    const uint64_t bin = size >> shift;
+    uint32_t q = 0;
+    while (q < PMESH_UNARY && pmesh_code_bit(coder, &m->unary[scale][q],
+                                             bin > q))
+        q++;
+    if (q == PMESH_UNARY)
+        q += pmesh_code_number(coder, &m->escape,
+                               (uint32_t)(bin - PMESH_UNARY));
+    uint64_t result = q;
+    unsigned node = 0;
+    for (unsigned i = shift; i-- > 0;) {
+        const unsigned bit = size >> i & 1;
+        unsigned got;
+        if (node < LOW_MODELS && shift - i <= 2) {
+            got = pmesh_code_bit(coder, &m->low[scale][node], bit);
+            node = 1 + got;
+        } else {
+            got = pmesh_code_raw(coder, 1, bit);
+        }
+        result = result << 1 | got;
+    }
+    const int64_t magnitude = (int64_t)(result + 1);
+    return negative ? center - magnitude : center + magnitude;
+}
+
+static uint32_t expected(const pmesh_mean *m, uint32_t size)
+{
+    const uint64_t e = (uint64_t)m->value * size / MEAN_ONE;
+    return e < 1 ? 1 : e > (1u << 28) ? 1u << 28 : (uint32_t)e;
+}
+
+static void learn(pmesh_mean *m, uint64_t seen, uint32_t size)
+{
+    uint64_t ratio = seen * MEAN_ONE / size;
+    if (ratio > 64 * MEAN_ONE)
+        ratio = 64 * MEAN_ONE;
+    const int64_t step = ((int64_t)ratio - (int64_t)m->value) * 2 /
+                         (2 * (int64_t)m->uses + 5);
+    m->value = (uint32_t)((int64_t)m->value + step);
+    if (m->uses < MEAN_USES)
+        m->uses++;
+}
+
+/* The axis with the largest normal component last. */
+static void axis_order(const int32_t n[3], int axis[3])
+{
+    int last = 2;
+    int32_t largest = -1;
+    for (int k = 2; k >= 0; k--) {
+        const int32_t size = n[k] < 0 ? -n[k] : n[k];
+        if (size > largest) {
+            largest = size;
+            last = k;
+        }
+    }
+    axis[0] = last == 0 ? 1 : 0;
+    axis[1] = last == 2 ? 1 : 2;
+    axis[2] = last;
+}
+
+/* Given deviations along and across the normal, in units of `along`: the
+ * covariance is I - rho n n', its inverse I + kappa n n'. */
+typedef struct gauss {
+    int64_t n[3]; /* in coding order */
+    int64_t rho, kappa;
+    uint32_t along;
+} gauss;
+
+static gauss gauss_make(const int32_t normal[3], const int axis[3],
+                        uint32_t along, uint32_t across)
+{
+    gauss g = { .along = along };
+    if (across > 4 * along)
+        across = 4 * along;
+    const uint64_t ratio = (uint64_t)across * ONE / along; /* <= 4 * ONE */
+    const uint64_t least = ONE / LEAST_RATIO;
+    const int64_t q = (int64_t)(ratio < least ? least : ratio);
+    g.rho = ONE - q * q / ONE;
+    g.kappa = (int64_t)ONE * ONE / q * ONE / q - ONE; /* in 1/ONE */
+    for (int k = 0; k < 3; k++)
+        g.n[k] = normal[axis[k]];
+    if (g.n[2] == 0)
+        g.rho = g.kappa = 0;
+    return g;
+}
+
+/* Mean and deviation of coordinate k given the residuals d of those before;
+ * everything in 1/16 grid steps. */
+static int64_t gauss_given(const gauss *g, int k, const int64_t d[3],
+                           uint32_t *deviation)
+{
+    const int64_t *n = g->n;
+    if (k == 2) {
+        const int64_t t = (n[0] * d[0] + n[1] * d[1]) / ONE;
+        const int64_t p = ONE + g->kappa * n[2] / ONE * n[2] / ONE;
+        *deviation = (uint32_t)((uint64_t)g->along * 128 /
+                                pmesh_isqrt((uint64_t)p));
+        return -(g->kappa * n[2] / ONE * t) / p;
+    }
+    const int64_t least = ONE / 4096;
+    int64_t variance = ONE - g->rho * n[0] / ONE * n[0] / ONE, mean = 0;
+    if (variance < least)
+        variance = least;
+    if (k == 1) {
+        const int64_t both = -(g->rho * n[0] / ONE * n[1] / ONE);
+        mean = both * d[0] / variance;
+        const int64_t given = ONE - g->rho * n[1] / ONE * n[1] / ONE -
+                              both * both / variance;
+        variance = given < least ? least : given;
+    }
+    *deviation = (uint32_t)((uint64_t)g->along *
+                            pmesh_isqrt((uint64_t)variance) / 128);
+    return mean;
+}
+
+bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
+                         const pmesh_prediction *p, int32_t position[3])
+{
+    pmesh_mean *m_along = &c->models.along[which][p->ring_class][p->unknown];
+    pmesh_mean *m_across = &c->models.across[which][p->rough][p->unknown];
+    int axis[3];
+    int64_t d[3] = { 0, 0, 0 };
+
+    axis_order(p->normal, axis);
+    const gauss g = gauss_make(p->normal, axis, expected(m_along, p->size),
+                               expected(m_across, p->size));
+    for (int k = 0; k < 3; k++) {
+        const int a = axis[k];
+        uint32_t deviation;
+        const int64_t mean = p->position[a] + gauss_given(&g, k, d, &deviation);
+        const int64_t value =
+            code_coordinate(coder, &c->models.residual[which], mean, deviation,
+                            position[a]);
+        if (value < 0 || value > c->bounds[a])
+            return false;
+        position[a] = (int32_t)value;
+        d[k] = value * FRACTION - p->position[a];
+    }
+
+    int64_t height = 0;
+    uint64_t square = 0;
+    for (int k = 0; k < 3; k++) {
+        height += d[k] * g.n[k];
+        square += (uint64_t)(d[k] * d[k]);
+    }
+    const uint64_t across = (uint64_t)(height < 0 ? -height : height) / ONE;
+    const uint64_t flat =
+        square > across * across ? square - across * across : 0;
+    learn(m_along, (uint64_t)pmesh_isqrt(flat) * 181 / 256, p->size);
+    learn(m_across, across, p->size);
+    return true;
+}

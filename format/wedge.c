@@ -1,0 +1,493 @@
+/* SPDX-License-Identifier: MIT */
+#include "format/wedge.h"
+
+/* One corner's wedge, as written or as read. `key` is PMESH_NONE when
+ * decoding. */
+typedef struct corner {
+    uint32_t half_edge, key, wedge;
+} corner;
+
+static corner ask(const pmesh_oracle *oracle, uint32_t h)
+{
+    corner a = { h, PMESH_NONE, PMESH_NONE };
+    if (oracle) {
+        a.key = oracle->key(oracle->user, h);
+        a.wedge = oracle->number(oracle->user, a.key);
+    }
+    return a;
+}
+
+static pmesh_status corrupt(pmesh_codec *c, const char *rule)
+{
+    c->rule = rule;
+    return PMESH_E_CORRUPT;
+}
+
+static pmesh_status make_wedge(pmesh_codec *c, const pmesh_oracle *oracle,
+                               corner a, uint32_t parent)
+{
+    pmesh_mesh *m = &c->mesh;
+    if (m->wedge_count == m->wedge_capacity ||
+        m->wedge_count - c->block.wedge == c->wedge_limit)
+        return corrupt(c, "SPEC 6.6: more wedges than the header declares");
+    const uint32_t w = m->wedge_count++;
+    m->wedge[a.half_edge] = w;
+    m->wedge_vertex[w] = m->vertex[a.half_edge];
+    m->wedge_parent[w] = parent;
+    c->wedge_corner[w] = a.half_edge;
+    if (oracle)
+        oracle->set_number(oracle->user, a.key, w);
+    return PMESH_OK;
+}
+
+/* Place in its vertex' ring, from first[] on, of a corner that has the wedge
+ * already; PMESH_NONE if there is none near (the wedge is then made again). */
+static uint32_t find_place(const pmesh_mesh *m, corner a)
+{
+    const uint32_t start = m->first[m->vertex[a.half_edge]];
+    uint32_t h = start, place = 0;
+    if (a.wedge == PMESH_NONE)
+        return PMESH_NONE;
+    do {
+        if (m->wedge[h] == a.wedge)
+            return place;
+        h = pmesh_turn_left(m, h);
+    } while (h != PMESH_NONE && h != start && ++place < PMESH_MAX_PLACE);
+    return PMESH_NONE;
+}
+
+static pmesh_status pick_wedge(pmesh_codec *c, pmesh_coder *coder, corner a,
+                               uint32_t place)
+{
+    pmesh_mesh *m = &c->mesh;
+    const uint32_t start = m->first[m->vertex[a.half_edge]];
+    uint32_t h = start;
+
+    place = pmesh_code_number(coder, &c->models.wedge.pick, place);
+    if (place >= PMESH_MAX_PLACE)
+        return corrupt(c, "SPEC 6.6: a corner's place is out of range");
+    for (; place > 0 && h != PMESH_NONE; place--) {
+        h = pmesh_turn_left(m, h);
+        if (h == start)
+            h = PMESH_NONE;
+    }
+    if (h == PMESH_NONE || m->wedge[h] == PMESH_NONE)
+        return corrupt(c, "SPEC 6.6: no wedge at that corner");
+    m->wedge[a.half_edge] = m->wedge[h];
+    return PMESH_OK;
+}
+
+/* A new wedge at a vertex that is there already takes, one level coarser, the
+ * place that its neighbour in the ring takes. */
+static uint32_t parent_like(const pmesh_mesh *m, uint32_t h, uint32_t guess)
+{
+    if (guess != PMESH_NONE)
+        return m->wedge_parent[guess];
+    const uint32_t start = m->first[m->vertex[h]];
+    uint32_t k = start;
+    do {
+        if (m->wedge[k] != PMESH_NONE)
+            return m->wedge_parent[m->wedge[k]];
+        k = pmesh_turn_left(m, k);
+    } while (k != PMESH_NONE && k != start);
+    return PMESH_NONE;
+}
+
+/* One corner: like the first guess, like the second, like some other corner
+ * of the vertex, or new. */
+static pmesh_status code_corner(pmesh_codec *c, pmesh_coder *coder,
+                                const pmesh_oracle *oracle, uint32_t h,
+                                uint32_t guess, uint32_t second)
+{
+    pmesh_wedge_models *models = &c->models.wedge;
+    const corner a = ask(oracle, h);
+    if (guess == PMESH_NONE) {
+        guess = second;
+        second = PMESH_NONE;
+    }
+    if (guess != PMESH_NONE) {
+        const unsigned agree =
+            second == PMESH_NONE ? 0 : second == guess ? 1 : 2;
+        if (!pmesh_code_bit(coder, &models->corner[agree], a.wedge != guess)) {
+            c->mesh.wedge[h] = guess;
+            return PMESH_OK;
+        }
+        if (agree == 2 &&
+            !pmesh_code_bit(coder, &models->corner[3], a.wedge != second)) {
+            c->mesh.wedge[h] = second;
+            return PMESH_OK;
+        }
+    }
+    c->mesh.wedge[h] = PMESH_NONE;
+    const uint32_t place = find_place(&c->mesh, a);
+    if (pmesh_code_bit(coder, &models->choice[0], place != PMESH_NONE))
+        return pick_wedge(c, coder, a, place);
+    return make_wedge(c, oracle, a, parent_like(&c->mesh, h, guess));
+}
+
+pmesh_status pmesh_wedge_ring_code(pmesh_codec *c, pmesh_coder *coder,
+                                   const pmesh_oracle *oracle, uint32_t x)
+{
+    pmesh_mesh *m = &c->mesh;
+    if (!m->value_count)
+        return PMESH_OK;
+    const uint32_t start = m->first[x];
+    uint32_t h = start, before = PMESH_NONE;
+    do {
+        m->wedge[h] = PMESH_NONE;
+        h = pmesh_turn_left(m, h);
+    } while (h != PMESH_NONE && h != start);
+    h = start;
+    do {
+        const pmesh_status status =
+            before == PMESH_NONE
+                ? make_wedge(c, oracle, ask(oracle, h), PMESH_NONE)
+                : code_corner(c, coder, oracle, h, before, PMESH_NONE);
+        if (status != PMESH_OK)
+            return status;
+        before = m->wedge[h];
+        h = pmesh_turn_left(m, h);
+    } while (h != PMESH_NONE && h != start);
+    return PMESH_OK;
+}
+
+/* What a split changed: the corners of u, those of v and the wings in the new
+ * faces, and the best guesses for the latter. */
+typedef struct change {
+    uint32_t count; /* corners of u */
+    uint32_t at_u[PMESH_MAX_RING];
+    uint32_t coarse[PMESH_MAX_RING]; /* their wedges before, or PMESH_NONE */
+    uint32_t others;
+    uint32_t at[4], guess[4], second[4];
+} change;
+
+static void add_other(change *d, uint32_t h, uint32_t guess, uint32_t second)
+{
+    d->at[d->others] = h;
+    d->guess[d->others] = guess;
+    d->second[d->others++] = second;
+}
+
+static uint32_t wedge_at(const pmesh_mesh *m, uint32_t h)
+{
+    return h == PMESH_NONE ? PMESH_NONE : m->wedge[h];
+}
+
+/* The wedge at the end of h in h's face. */
+static uint32_t wedge_end(const pmesh_mesh *m, uint32_t h)
+{
+    return h == PMESH_NONE ? PMESH_NONE : m->wedge[pmesh_next(h)];
+}
+
+static void change_gather(change *d, pmesh_mesh *m, uint32_t u, uint32_t a,
+                          uint32_t b)
+{
+    const uint32_t start = m->first[u], new_face = a != PMESH_NONE ? a : b;
+    uint32_t h = start, coarse = PMESH_NONE;
+    d->count = d->others = 0;
+    do {
+        d->at_u[d->count] = h;
+        d->coarse[d->count] = h < new_face ? m->wedge[h] : PMESH_NONE;
+        if (h < new_face && coarse == PMESH_NONE)
+            coarse = m->wedge[h];
+        d->count++;
+        h = pmesh_turn_left(m, h);
+    } while (h != PMESH_NONE && h != start && d->count < PMESH_MAX_RING);
+
+    /* Face a is (v, a, u), face b is (v, u, b). Around v the neighbours of the
+     * new faces lie across v-a and v-b, around the wings also across u-a and
+     * u-b. If v kept no other face, it had the wedge of what moved. */
+    uint32_t at_v_a = PMESH_NONE, at_v_b = PMESH_NONE;
+    if (a != PMESH_NONE)
+        at_v_a = wedge_end(m, m->twin[a]);
+    if (b != PMESH_NONE)
+        at_v_b = wedge_at(m, m->twin[b + 2]);
+    if (at_v_a == PMESH_NONE && at_v_b == PMESH_NONE)
+        at_v_a = coarse;
+    if (a != PMESH_NONE) {
+        add_other(d, a, at_v_a, at_v_b);
+        add_other(d, a + 1, wedge_end(m, m->twin[a + 1]),
+                  wedge_at(m, m->twin[a]));
+    }
+    if (b != PMESH_NONE) {
+        add_other(d, b, at_v_b, at_v_a);
+        add_other(d, b + 2, wedge_at(m, m->twin[b + 1]),
+                  wedge_end(m, m->twin[b + 2]));
+    }
+    for (uint32_t i = 0; i < d->count; i++)
+        m->wedge[d->at_u[i]] = PMESH_NONE;
+    for (uint32_t i = 0; i < d->others; i++)
+        m->wedge[d->at[i]] = PMESH_NONE;
+}
+
+static uint32_t first_guess(const change *d, uint32_t i)
+{
+    return d->guess[i] != PMESH_NONE ? d->guess[i] : d->second[i];
+}
+
+/* The ordinary case: u is one wedge, and everything else as first guessed. */
+static bool is_ordinary(const change *d, const pmesh_oracle *oracle)
+{
+    const uint32_t key = oracle->key(oracle->user, d->at_u[0]);
+    for (uint32_t i = 1; i < d->count; i++)
+        if (oracle->key(oracle->user, d->at_u[i]) != key)
+            return false;
+    for (uint32_t i = 0; i < d->others; i++) {
+        const uint32_t guess = first_guess(d, i);
+        if (guess == PMESH_NONE || ask(oracle, d->at[i]).wedge != guess)
+            return false;
+    }
+    return true;
+}
+
+/* Context: whether seams are near. */
+static unsigned seam_class(const change *d)
+{
+    uint32_t coarse = PMESH_NONE;
+    unsigned seams = 0;
+    for (uint32_t i = 0; i < d->count; i++) {
+        if (d->coarse[i] == PMESH_NONE)
+            continue;
+        if (coarse != PMESH_NONE && d->coarse[i] != coarse)
+            seams |= 2;
+        coarse = d->coarse[i];
+    }
+    for (uint32_t i = 0; i < d->others; i++)
+        if (d->second[i] != PMESH_NONE && d->guess[i] != d->second[i])
+            seams |= 1;
+    return seams > 2 ? 2 : seams;
+}
+
+/* One wedge of u is one wedge of v one level coarser: so coarsening needs no
+ * list of its own. */
+static const char two_parents[] =
+    "SPEC 6.6: a wedge comes from two wedges of the parent";
+
+static bool set_coarse(pmesh_mesh *m, uint32_t wedge, uint32_t coarse)
+{
+    uint32_t *parent = &m->wedge_parent[wedge];
+    if (coarse == PMESH_NONE || *parent == coarse)
+        return true;
+    if (*parent != PMESH_NONE)
+        return false;
+    *parent = coarse;
+    return true;
+}
+
+/* Each corner of u against the one before it; a wedge of u is, one level
+ * coarser, the wedge of v that its faces had. */
+static pmesh_status code_child(pmesh_codec *c, pmesh_coder *coder,
+                               const pmesh_oracle *oracle, const change *d,
+                               uint32_t coarse)
+{
+    pmesh_mesh *m = &c->mesh;
+    for (uint32_t i = 0; i < d->count; i++) {
+        const uint32_t h = d->at_u[i];
+        pmesh_status status = PMESH_OK;
+        if (i == 0) {
+            status = make_wedge(c, oracle, ask(oracle, h), PMESH_NONE);
+        } else {
+            const corner a = ask(oracle, h);
+            const uint32_t before = m->wedge[d->at_u[i - 1]];
+            const unsigned context =
+                d->coarse[i] == PMESH_NONE || d->coarse[i - 1] == PMESH_NONE
+                    ? 2
+                    : d->coarse[i] != d->coarse[i - 1];
+            const uint32_t place = find_place(m, a);
+            if (!pmesh_code_bit(coder, &c->models.wedge.seam[context],
+                                a.wedge != before))
+                m->wedge[h] = before;
+            else if (pmesh_code_bit(coder, &c->models.wedge.choice[1],
+                                    place != PMESH_NONE))
+                status = pick_wedge(c, coder, a, place);
+            else
+                status = make_wedge(c, oracle, a, PMESH_NONE);
+        }
+        if (status != PMESH_OK)
+            return status;
+        if (!set_coarse(m, m->wedge[h], d->coarse[i]))
+            return corrupt(c, two_parents);
+    }
+    for (uint32_t i = 0; i < d->count; i++)
+        if (m->wedge_parent[m->wedge[d->at_u[i]]] == PMESH_NONE)
+            set_coarse(m, m->wedge[d->at_u[i]], coarse);
+    return PMESH_OK;
+}
+
+static pmesh_status code_wedges(pmesh_codec *c, pmesh_coder *coder,
+                                const pmesh_oracle *oracle, uint32_t u,
+                                uint32_t a, uint32_t b)
+{
+    pmesh_mesh *m = &c->mesh;
+    change d;
+    change_gather(&d, m, u, a, b);
+    /* What of v is one level coarser for wedges that no moved face has. */
+    uint32_t coarse = first_guess(&d, 0);
+    for (uint32_t i = 0; i < d.count && coarse == PMESH_NONE; i++)
+        coarse = d.coarse[i];
+
+    pmesh_status status = PMESH_OK;
+    const bool ordinary = coder->encoding && is_ordinary(&d, oracle);
+    if (!pmesh_code_bit(coder, &c->models.wedge.ordinary[seam_class(&d)],
+                        !ordinary)) {
+        status = make_wedge(c, oracle, ask(oracle, d.at_u[0]), PMESH_NONE);
+        for (uint32_t i = 0; i < d.count && status == PMESH_OK; i++) {
+            m->wedge[d.at_u[i]] = m->wedge[d.at_u[0]];
+            if (!set_coarse(m, m->wedge[d.at_u[0]], d.coarse[i]))
+                status = corrupt(c, two_parents);
+        }
+        if (status == PMESH_OK &&
+            m->wedge_parent[m->wedge[d.at_u[0]]] == PMESH_NONE)
+            set_coarse(m, m->wedge[d.at_u[0]], coarse);
+        for (uint32_t i = 0; i < d.others && status == PMESH_OK; i++) {
+            m->wedge[d.at[i]] = first_guess(&d, i);
+            if (first_guess(&d, i) == PMESH_NONE)
+                status = corrupt(c, "SPEC 6.6: an ordinary split without a "
+                                    "wedge to go on with");
+        }
+        return status;
+    }
+    status = code_child(c, coder, oracle, &d, coarse);
+    for (uint32_t i = 0; i < d.others && status == PMESH_OK; i++)
+        status = code_corner(c, coder, oracle, d.at[i], d.guess[i],
+                             d.second[i]);
+    return status;
+}
+
+pmesh_status pmesh_material_code(pmesh_codec *c, pmesh_coder *coder,
+                                 const pmesh_oracle *oracle, uint32_t face,
+                                 uint32_t guess, uint32_t second)
+{
+    pmesh_mesh *m = &c->mesh;
+    pmesh_wedge_models *models = &c->models.wedge;
+    if (!m->material)
+        return PMESH_OK;
+    const uint32_t truth =
+        oracle ? oracle->material(oracle->user, face) : PMESH_NONE;
+    const unsigned differ = guess != second;
+    uint32_t result = guess;
+    if (pmesh_code_bit(coder, &models->material[differ], truth != guess)) {
+        result = second;
+        if (!differ ||
+            pmesh_code_bit(coder, &models->material[2], truth != second))
+            result = pmesh_code_number(coder, &models->pick, truth);
+    }
+    if (result >= m->material_count)
+        return corrupt(c, "SPEC 6.6: no such material");
+    m->material[face] = result;
+    return PMESH_OK;
+}
+
+/* The material across half-edge h; `fallback` beyond a boundary. */
+static uint32_t material_across(const pmesh_mesh *m, uint32_t h,
+                                uint32_t fallback)
+{
+    const uint32_t t = m->twin[h];
+    return t == PMESH_NONE ? fallback : m->material[t / 3];
+}
+
+static pmesh_status code_materials(pmesh_codec *c, pmesh_coder *coder,
+                                   const pmesh_oracle *oracle, uint32_t a,
+                                   uint32_t b)
+{
+    const pmesh_mesh *m = &c->mesh;
+    const uint32_t far_from_v[2] = { a + 1, b + 1 };
+    const uint32_t near_v[2] = { a, b + 2 };
+    for (int i = 0; i < 2; i++) {
+        const uint32_t h = i == 0 ? a : b;
+        if (h == PMESH_NONE)
+            continue;
+        uint32_t guess = material_across(m, near_v[i], PMESH_NONE);
+        const uint32_t second = material_across(m, far_from_v[i], guess);
+        if (guess == PMESH_NONE)
+            guess = second == PMESH_NONE ? 0 : second;
+        const pmesh_status status = pmesh_material_code(
+            c, coder, oracle, h / 3, guess,
+            second == PMESH_NONE ? guess : second);
+        if (status != PMESH_OK)
+            return status;
+    }
+    return PMESH_OK;
+}
+
+pmesh_status pmesh_wedge_split_code(pmesh_codec *c, pmesh_coder *coder,
+                                    const pmesh_oracle *oracle, uint32_t u,
+                                    pmesh_cut cut)
+{
+    pmesh_mesh *m = &c->mesh;
+    const uint32_t faces =
+        cut.first != PMESH_NONE && cut.end != PMESH_NONE ? 2 : 1;
+    const uint32_t face = 3 * (m->face_count - faces);
+    const uint32_t a = cut.first != PMESH_NONE ? face : PMESH_NONE;
+    const uint32_t b = cut.end == PMESH_NONE ? PMESH_NONE
+                       : faces == 2          ? face + 3
+                                             : face;
+    if (m->material) {
+        const pmesh_status status = code_materials(c, coder, oracle, a, b);
+        if (status != PMESH_OK)
+            return status;
+    }
+    return m->value_count ? code_wedges(c, coder, oracle, u, a, b) : PMESH_OK;
+}
+
+/* Mean of the values at the other corners of the wedge's faces, from the corner
+ * where it was made turning left as long as the wedge goes on, as far as they
+ * are known; else the coarser wedge's; else the middle. Returns how many. */
+static uint32_t guess_values(const pmesh_codec *c, uint32_t w, uint32_t *guess)
+{
+    const pmesh_mesh *m = &c->mesh;
+    const uint32_t n = m->value_count;
+    const uint32_t start = c->wedge_corner[w];
+    uint32_t h = start, count = 0;
+
+    for (uint32_t i = 0; i < n; i++)
+        guess[i] = 0;
+    do {
+        const uint32_t other[2] = { m->wedge[pmesh_next(h)],
+                                    m->wedge[pmesh_prev(h)] };
+        for (int k = 0; k < 2; k++) {
+            if (other[k] >= w) /* unknown, PMESH_NONE included */
+                continue;
+            for (uint32_t i = 0; i < n; i++)
+                guess[i] += m->value[(size_t)other[k] * n + i];
+            count++;
+        }
+        h = pmesh_turn_left(m, h);
+    } while (h != PMESH_NONE && h != start && m->wedge[h] == w &&
+             count < PMESH_MAX_RING);
+
+    const uint32_t parent = m->wedge_parent[w];
+    for (uint32_t i = 0; i < n; i++) {
+        if (count)
+            guess[i] = (guess[i] + count / 2) / count;
+        else if (parent < w)
+            guess[i] = m->value[(size_t)parent * n + i];
+        else
+            guess[i] = c->component_max[i] / 2;
+    }
+    return count;
+}
+
+pmesh_status pmesh_wedge_values_code(pmesh_codec *c, pmesh_coder *coder,
+                                     const pmesh_oracle *oracle, uint32_t w)
+{
+    pmesh_mesh *m = &c->mesh;
+    uint32_t guess[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS];
+    const unsigned sure = guess_values(c, w, guess) > 2;
+    const uint16_t *truth = oracle ? oracle->values(oracle->user, w) : NULL;
+
+    for (uint32_t i = 0; i < m->value_count; i++) {
+        const int32_t r = truth ? truth[i] - (int32_t)guess[i] : 0;
+        const uint32_t size = pmesh_code_number(
+            coder, &c->models.value[i][sure], (uint32_t)(r < 0 ? -r : r));
+        const unsigned negative =
+            size && pmesh_code_bit(coder, &c->models.value_sign[i][sure],
+                                   r < 0);
+        const int64_t value =
+            negative ? (int64_t)guess[i] - size : (int64_t)guess[i] + size;
+        if (value < 0 || value > c->component_max[i])
+            return corrupt(c, "SPEC 6.6: an attribute value is out of range");
+        m->value[(size_t)w * m->value_count + i] = (uint16_t)value;
+    }
+    return PMESH_OK;
+}
