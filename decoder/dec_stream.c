@@ -57,7 +57,8 @@ static pmesh_status finish_chunk(pmesh_decoder *dec)
     if (pmesh_get_u32(&in) != dec->crc)
         return dec_fail(dec, PMESH_E_CHECKSUM,
                         "SPEC 5.2: a chunk's checksum does not match");
-    if (dec->type != PMESH_CHUNK_HEADER && dec->type != PMESH_CHUNK_END)
+    if (!dec->skipping && dec->type != PMESH_CHUNK_HEADER &&
+        dec->type != PMESH_CHUNK_END)
         dec->hash = pmesh_hash_crc(dec->hash, dec->crc);
     if (!dec->skipping) {
         const pmesh_status status = dec_chunk_finish(dec);

@@ -216,14 +216,12 @@ static void note_split(pmesh_decoder *dec, uint32_t u, touched *faces,
         touch(vertices, dec->codec.mesh.parent[u]);
 }
 
-/* With attributes a moved mesh vertex may have several output vertices, which
- * the faces next to it name. */
+/* With attributes a moved mesh vertex may have several output vertices. */
 static void note_moved_wedges(pmesh_decoder *dec, const touched *moved,
-                              uint32_t faces, touched *vertices)
+                              uint32_t wedges, touched *vertices)
 {
     const uint32_t *vertex = dec->codec.mesh.wedge_vertex;
-    for (uint32_t h = 0; h < 3 * faces; h++) {
-        const uint32_t w = dec->view.index[h];
+    for (uint32_t w = 0; w < wedges; w++) {
         const uint32_t b = vertex[w] >> moved->shift;
         if (moved->bits[b >> 3] >> (b & 7) & 1)
             touch(vertices, w);
@@ -257,7 +255,7 @@ void dec_view_move(pmesh_decoder *dec, uint32_t target, pmesh_changes *changes)
     if (!changes)
         return;
     if (view->position && dec->codec.mesh.wedge)
-        note_moved_wedges(dec, &moved, faces, &v);
+        note_moved_wedges(dec, &moved, wedges, &v);
     else if (view->position)
         for (uint32_t i = 0; i < BUCKETS / 8; i++)
             v.bits[i] |= moved.bits[i];

@@ -38,8 +38,8 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h);
 pmesh_status pmesh_header_read(pmesh_cursor *in, pmesh_header_chunk *h,
                                const char **rule);
 
-/* The content hash is FNV-1a, 64 bits, over the CRCs of the chunks behind the
- * header, in file order. */
+/* The content hash is FNV-1a, 64 bits, over the CRCs of the critical chunks
+ * between header and end, in file order. */
 #define PMESH_HASH_START 0xcbf29ce484222325u
 uint64_t pmesh_hash_crc(uint64_t hash, uint32_t crc);
 

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+# Build with `make`, look with `make demo`, test with `make test`; `make help`
+# lists all. Variants live side by side: make config=sanitize check
+# Respected: CC CXX CFLAGS CXXFLAGS LDFLAGS, DESTDIR PREFIX LIBDIR; WERROR=1
+# makes warnings errors, V=1 shows the commands.
+
+config ?= release
+PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+
+B := build/$(config)
+soname := libpmesh.so.0
+version := $(shell awk '/define PMESH_VERSION_/ { printf "%s%s", dot, $$3; \
+  dot = "." }' format/pmesh.h)
+
+opt_release := -O2 -DNDEBUG
+opt_debug := -O0 -g
+opt_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
+ifndef opt_$(config)
+$(error config=$(config): there are release, debug and sanitize)
+endif
+
+# -ffp-contract=off: the encoder's choices must not depend on the compiler.
+shared_flags := -fPIC -pthread -fvisibility=hidden -ffp-contract=off -I. \
+  $(opt_$(config)) $(if $(filter 1,$(WERROR)),-Werror)
+c_flags := -std=c11 $(shared_flags) -Wall -Wextra -Wpedantic -Wshadow \
+  -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wcast-qual \
+  -Wwrite-strings -Wundef -Wvla $(CPPFLAGS) $(CFLAGS)
+cxx_flags := -std=c++17 $(shared_flags) -Wall -Wextra $(CPPFLAGS) $(CXXFLAGS)
+link_flags := -pthread $(filter -fsanitize=%,$(opt_$(config))) $(LDFLAGS)
+posix := -D_POSIX_C_SOURCE=200809L
+cgal := -isystem /usr/include/eigen3 -Wno-maybe-uninitialized
+bridge_libs := -ldraco -lmeshoptimizer
+
+units ?= $(wildcard tests/unit/*.c)
+obj = $(patsubst %,$(B)/%.o,$(basename $(1)))
+dec_obj := $(call obj,$(wildcard format/*.c decoder/*.c))
+lib_obj := $(dec_obj) $(call obj,$(wildcard encoder/*.c))
+tool_obj := $(call obj,$(wildcard tools/*.c tools/*.cpp))
+unit_obj := $(call obj,$(units)) $(filter-out $(B)/tools/pmesh.o,$(tool_obj))
+libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
+
+## all: libraries and program (default)
+all: $(libs) $(B)/pmesh
+
+$(B)/libpmesh.a: $(lib_obj)
+$(B)/libpmesh-dec.a: $(dec_obj)
+$(B)/libpmesh.so: $(lib_obj)
+$(B)/pmesh: $(tool_obj) $(B)/libpmesh.a
+$(B)/unit: $(unit_obj) $(B)/libpmesh.a
+$(libs) $(B)/pmesh $(B)/unit: $(B)/objects.list
+
+inputs = $(filter %.o %.a,$^)
+quiet = $(if $(V),,@echo '  $@' && )
+$(B)/%.a:
+	$(quiet)rm -f $@ && $(AR) rcs $@ $(inputs)
+$(B)/%.so:
+	$(quiet)$(CC) -shared -Wl,-soname,$(soname) $(inputs) $(link_flags) -lm -o $@
+$(B)/pmesh $(B)/unit:
+	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
+
+$(B)/%.o: %.c $(B)/c.flags
+	@mkdir -p $(@D)
+	$(quiet)$(CC) $(c_flags) $(if $(filter tools/% tests/%,$<),$(posix)) \
+	  -MMD -MP -c $< -o $@
+$(B)/%.o: %.cpp $(B)/cxx.flags | $(B)/found
+	@mkdir -p $(@D)
+	$(quiet)$(CXX) $(cxx_flags) $(if $(filter tests/%,$<),$(cgal)) \
+	  -MMD -MP -c $< -o $@
+
+# One line on what is missing, instead of a compiler's pages.
+$(B)/found:
+	@mkdir -p $(@D)
+	@tests/install-deps.sh --check build && touch $@
+
+# Written only when they change: objects are rebuilt when the compiler or its
+# flags are others, libraries and programs when a source came or went.
+$(B)/c.flags: line = $(CC) $(c_flags)
+$(B)/cxx.flags: line = $(CXX) $(cxx_flags)
+$(B)/objects.list: line = $(lib_obj) $(tool_obj) $(unit_obj)
+$(B)/c.flags $(B)/cxx.flags $(B)/objects.list: FORCE
+	@mkdir -p $(@D)
+	@echo '$(line)' | cmp -s - $@ || echo '$(line)' >$@
+FORCE:
+
+submake = $(MAKE) --no-print-directory \
+  $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,-j$(JOBS))
+
+## demo: bake a sample mesh, extract three levels, draw them
+demo: deps
+	+@$(submake) all
+	@tests/demo.sh $(B)/pmesh build/demo
+
+## test: everything that must pass, after installing what is missing
+test: deps
+	+@$(submake) check
+
+## check: the same without installing anything
+check:
+	+@$(submake) all $(B)/unit
+	@tests/run.sh $(B)
+
+## unit: only the unit tests; T=name selects some
+unit: $(B)/unit
+	$< $(T)
+
+## check-deps: every #include follows the architecture
+check-deps:
+	@tests/check-deps.sh
+
+## check-headers: every header compiles alone, public ones as C++ too
+check-headers:
+	@tests/check-headers.sh
+
+## check-symbols: names, exports, imports and data of the libraries
+check-symbols: $(libs)
+	@tests/check-symbols.sh $(B)
+
+## bench: size, quality and time against other programs (tests/bench)
+bench: bench-deps
+	+@$(submake) all $(B)/bench_simplify
+	@tests/bench/all.sh $(B)
+$(B)/bench_simplify: $(B)/tests/bench/bench_simplify.o
+	$(quiet)$(CXX) $^ $(link_flags) -lmeshoptimizer -lgmp -lmpfr -o $@
+
+## deps: install the Debian packages that building and testing need
+deps:
+	@tests/install-deps.sh build test
+## bench-deps: those that `make bench` needs
+bench-deps:
+	@tests/install-deps.sh build bench
+
+headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h
+lib := $(DESTDIR)$(LIBDIR)
+include := $(DESTDIR)$(PREFIX)/include
+bin := $(DESTDIR)$(PREFIX)/bin
+man := $(DESTDIR)$(PREFIX)/share/man/man1
+
+## install: into PREFIX (/usr/local) below DESTDIR
+install: all
+	install -d $(bin) $(man) $(include) $(lib)/pkgconfig
+	install -m 755 $(B)/pmesh $(bin)
+	install -m 644 tools/pmesh.1 $(man)
+	install -m 644 $(B)/libpmesh.a $(B)/libpmesh-dec.a $(lib)
+	install -m 755 $(B)/libpmesh.so $(lib)/libpmesh.so.$(version)
+	ln -sf libpmesh.so.$(version) $(lib)/$(soname)
+	ln -sf $(soname) $(lib)/libpmesh.so
+	for h in $(headers); do sed 's|#include "format/|#include "|' $$h \
+	  >$(include)/$${h##*/}; done
+	sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|' \
+	  -e 's|@VERSION@|$(version)|' pmesh.pc.in >$(lib)/pkgconfig/pmesh.pc
+
+## uninstall: remove what install put there
+uninstall:
+	rm -f $(bin)/pmesh $(man)/pmesh.1
+	rm -f $(addprefix $(include)/,$(notdir $(headers)))
+	rm -f $(lib)/libpmesh.a $(lib)/libpmesh-dec.a $(lib)/libpmesh.so*
+	rm -f $(lib)/pkgconfig/pmesh.pc
+
+## clean: remove build/
+clean:
+	rm -rf build
+
+## help: this list
+help:
+	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
+
+.PHONY: all demo test check unit check-deps check-headers check-symbols bench
+.PHONY: deps bench-deps install uninstall clean help FORCE
+-include $(shell find $(B) -name '*.d' 2>/dev/null)

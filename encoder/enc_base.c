@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * enc_base.c - hands the base mesh, what contraction left, to the codec.
+ */
+#include <string.h>
+
+#include "encoder/enc_replay.h"
+#include "format/alloc.h"
+
+/* The base mesh with numbers of its own, and where they come from. */
+typedef struct base_mesh {
+    pmesh_mesh mesh;
+    uint32_t edge_count;
+    uint32_t *corner; /* per half-edge: of the import */
+    uint32_t *vertex; /* per vertex of the import: of the base, or ENC_NONE */
+    uint32_t *source; /* per base vertex: of the import */
+    uint32_t *edge_of_codec;
+    uint32_t *codec_vertex;
+    uint32_t *table; /* directed pairs -> half-edges */
+    uint64_t table_size;
+} base_mesh;
+
+static void base_free(base_mesh *b, const enc_replay *r)
+{
+    const pmesh_allocator *a = &r->allocator;
+    const size_t n = r->base_vertices, edges = b->edge_count;
+    pmesh_release(a, b->mesh.vertex, edges, 4);
+    pmesh_release(a, b->mesh.twin, edges, 4);
+    pmesh_release(a, b->mesh.position, n, sizeof *b->mesh.position);
+    pmesh_release(a, b->corner, edges, 4);
+    pmesh_release(a, b->vertex, r->mesh->vertex_count, 4);
+    pmesh_release(a, b->source, n, 4);
+    pmesh_release(a, b->edge_of_codec, edges, 4);
+    pmesh_release(a, b->codec_vertex, n, 4);
+    pmesh_release(a, b->table, (size_t)b->table_size, 4);
+}
+
+static bool base_allocate(base_mesh *b, const enc_replay *r)
+{
+    const pmesh_allocator *a = &r->allocator;
+    const size_t n = r->base_vertices, edges = b->edge_count;
+    b->mesh.vertex = pmesh_alloc(a, edges, 4);
+    b->mesh.twin = pmesh_alloc(a, edges, 4);
+    b->mesh.position = pmesh_alloc(a, n, sizeof *b->mesh.position);
+    b->corner = pmesh_alloc(a, edges, 4);
+    b->vertex = pmesh_alloc(a, r->mesh->vertex_count, 4);
+    b->source = pmesh_alloc(a, n, 4);
+    b->edge_of_codec = pmesh_alloc(a, edges, 4);
+    b->codec_vertex = pmesh_alloc(a, n, 4);
+    b->table = pmesh_alloc(a, (size_t)b->table_size, 4);
+    return b->mesh.vertex && b->mesh.twin && b->mesh.position && b->corner &&
+           b->vertex && b->source && b->edge_of_codec && b->codec_vertex &&
+           b->table;
+}
+
+static void base_fill(base_mesh *b, const enc_replay *r)
+{
+    const enc_mesh *m = r->mesh;
+    uint32_t n = 0, h = 0;
+    for (uint32_t v = 0; v < m->vertex_count; v++) {
+        b->vertex[v] = ENC_NONE;
+        if (r->schedule->vertex_end[v] != ENC_NONE)
+            continue;
+        memcpy(b->mesh.position[n], r->position[v], sizeof *r->position);
+        b->codec_vertex[n] = PMESH_NONE;
+        b->source[n] = v;
+        b->vertex[v] = n++;
+    }
+    for (uint32_t f = 0; f < m->face_count; f++)
+        for (uint32_t k = 0;
+             k < 3 && r->schedule->face_end[f] == ENC_NONE; k++, h++) {
+            b->corner[h] = 3 * f + k;
+            b->mesh.vertex[h] = b->vertex[r->label[m->vertex[3 * f + k]]];
+        }
+    b->mesh.vertex_count = n;
+    b->mesh.face_count = r->base_faces;
+}
+
+static uint64_t slot_of(const base_mesh *b, uint32_t from, uint32_t to)
+{
+    const uint64_t mask = b->table_size - 1;
+    uint64_t slot =
+        (((uint64_t)from << 32 | to) * 0x9e3779b97f4a7c15u >> 20) & mask;
+    for (;; slot = (slot + 1) & mask) {
+        const uint32_t h = b->table[slot];
+        if (h == ENC_NONE || (b->mesh.vertex[h] == from &&
+                              b->mesh.vertex[pmesh_next(h)] == to))
+            return slot;
+    }
+}
+
+/* A contracted manifold has each directed pair once: twins are found by name.
+ */
+static void base_pair(base_mesh *b)
+{
+    for (uint64_t i = 0; i < b->table_size; i++)
+        b->table[i] = ENC_NONE;
+    for (uint32_t h = 0; h < b->edge_count; h++)
+        b->table[slot_of(b, b->mesh.vertex[h],
+                         b->mesh.vertex[pmesh_next(h)])] = h;
+    for (uint32_t h = 0; h < b->edge_count; h++)
+        b->mesh.twin[h] = b->table[slot_of(b, b->mesh.vertex[pmesh_next(h)],
+                                           b->mesh.vertex[h])];
+}
+
+/* Connectivity is known: attributes, and all that follows, need the maps. */
+static void base_done(void *user)
+{
+    enc_replay *r = user;
+    const base_mesh *b = r->base;
+    for (uint32_t h = 0; h < b->edge_count; h++)
+        r->corner_of[h] = b->corner[b->edge_of_codec[h]];
+    for (uint32_t i = 0; i < r->base_vertices; i++) {
+        r->vertex_of[b->codec_vertex[i]] = b->source[i];
+        r->born[b->source[i]] = b->codec_vertex[i];
+    }
+}
+
+pmesh_status enc_replay_base(enc_replay *r, pmesh_coder *coder)
+{
+    base_mesh b = { .edge_count = 3 * r->base_faces,
+                    .table_size = pmesh_base_scratch(r->base_faces) };
+    pmesh_status status = PMESH_E_MEMORY;
+    enc_replay_label(r, r->schedule->contraction_count);
+    if (base_allocate(&b, r)) {
+        base_fill(&b, r);
+        base_pair(&b);
+        r->base = &b;
+        r->oracle.base = &b.mesh;
+        r->oracle.base_edge = b.edge_of_codec;
+        r->oracle.base_vertex = b.codec_vertex;
+        r->oracle.base_done = base_done;
+        status = pmesh_base_code(&r->codec, coder, &r->oracle,
+                                 r->base_vertices, r->base_faces,
+                                 r->codec.mesh.wedge_capacity);
+        r->base = NULL;
+    }
+    base_free(&b, r);
+    return status;
+}

@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT */
+#include "encoder/enc_batch.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "encoder/enc_parallel.h"
+#include "encoder/enc_wedges.h"
+
+/* What is known of an edge from before the batch, kept at the lower numbered
+ * of its half-edges. "Forth" contracts its start into its end. */
+enum {
+    MAY_FORTH = 1,
+    MAY_BACK = 2,
+    UNCLEAN_FORTH = 4,
+    UNCLEAN_BACK = 8,
+    TURNED = 16 /* the second direction has been queued as well */
+};
+
+/* Puts a pair parallel to a chosen one before all that are not. */
+#define PARALLEL_FACTOR 0.001
+
+/* But not what costs so many times the median: features would be cut across
+ * for the sake of a pattern. */
+#define PARALLEL_LIMIT 10.0
+
+/* An entry whose cost has grown by more than this goes back to the queue. */
+#define STALE_FACTOR 1.1
+
+/* Unclean pairs are for meshes that leave no other choice: where clean ones
+ * fill this share of a batch, it ends with them. */
+#define CLEAN_SHARE 0.25
+
+enum { PROGRESS_INTERVAL = 1 << 16 };
+
+bool enc_run_done(const enc_run *run)
+{
+    return run->cancelled || run->surface.face_count <= run->face_target ||
+           run->surface.vertex_count <= run->vertex_target;
+}
+
+static void report_progress(enc_run *run)
+{
+    const pmesh_encoder_config *config = run->config;
+    const double all = run->mesh->face_count;
+
+    if (run->tick++ % PROGRESS_INTERVAL != 0 || !config->progress)
+        return;
+    const double done =
+        (all - run->surface.face_count) / (all - run->face_target + 1);
+    if (config->progress(config->progress_user, "contract", done) != 0)
+        run->cancelled = true;
+}
+
+/* An id names a half-edge of the pair and which of its ends is the child. */
+static uint32_t entry_id(uint32_t h, bool back)
+{
+    return h << 1 | (uint32_t)back;
+}
+
+static bool may(uint8_t state, bool back)
+{
+    return state & (back ? MAY_BACK : MAY_FORTH);
+}
+
+static bool unclean(uint8_t state, bool back)
+{
+    return state & (back ? UNCLEAN_BACK : UNCLEAN_FORTH);
+}
+
+static enc_entry make_entry(const enc_run *run, uint32_t h, bool back)
+{
+    const enc_surface *s = &run->surface;
+    const enc_pair pair = enc_surface_pair(s, h, back);
+    const uint32_t last = unclean(run->edge_state[h], back) ? ENC_KEY_LAST : 0;
+
+    return (enc_entry){ last | enc_key(enc_pricing_estimate(&run->pricing, s,
+                                                            &pair)),
+                        entry_id(h, back) };
+}
+
+/* What the edge of h may do; the ring of its start is marked. */
+static uint8_t examine_edge(const enc_surface *s, uint32_t h)
+{
+    if (!enc_surface_can_join(s, h))
+        return 0;
+    const enc_pair forth = enc_surface_pair(s, h, false);
+    const enc_pair back = enc_surface_pair(s, h, true);
+    const bool start_outer = enc_on_boundary(s, forth.child);
+    const bool end_outer = enc_on_boundary(s, forth.parent);
+    unsigned state = 0;
+
+    /* The boundary keeps its vertices unless contracted along itself. */
+    if (!start_outer || end_outer)
+        state |=
+            enc_wedges_clean(s, &forth) ? MAY_FORTH : MAY_FORTH | UNCLEAN_FORTH;
+    if (!end_outer || start_outer)
+        state |=
+            enc_wedges_clean(s, &back) ? MAY_BACK : MAY_BACK | UNCLEAN_BACK;
+    return (uint8_t)state;
+}
+
+static void queue_edge(enc_run *run, uint32_t h)
+{
+    const uint8_t state = examine_edge(&run->surface, h);
+    enc_entry best = { UINT32_MAX, 0 };
+
+    run->edge_state[h] = state;
+    for (int back = 0; back < 2; back++) {
+        if (!may(state, back != 0))
+            continue;
+        const enc_entry entry = make_entry(run, h, back);
+        if (entry.key < best.key)
+            best = entry;
+    }
+    if (state)
+        enc_queue_add(&run->queue, best);
+}
+
+static void collect(enc_run *run)
+{
+    enc_surface *s = &run->surface;
+
+    enc_queue_clear(&run->queue);
+    for (uint32_t v = 0; v < run->mesh->vertex_count; v++) {
+        uint32_t h = s->first[v];
+        if (h == ENC_NONE)
+            continue;
+        enc_surface_mark_ring(s, v);
+        do {
+            if (h < s->twin[h]) /* ENC_NONE is the largest */
+                queue_edge(run, h);
+            h = enc_turn(s, h);
+        } while (h != ENC_NONE && h != s->first[v]);
+        report_progress(run);
+    }
+    enc_queue_sort(&run->queue);
+    run->parallel_limit = PARALLEL_LIMIT * enc_queue_median(&run->queue);
+}
+
+static bool is_free(const enc_run *run, uint32_t v)
+{
+    return run->taken[v] != run->out->batch_count + 1;
+}
+
+/* Finds the pairs to be preferred next to this one, before it goes. */
+static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
+                              enc_entry out[4])
+{
+    const enc_surface *s = &run->surface;
+    enc_direction found[4];
+    unsigned count = 0;
+
+    enc_parallel_pairs(s, pair, found);
+    for (int i = 0; i < 4; i++) {
+        uint32_t h = found[i].edge;
+        bool back = found[i].child_is_end;
+        if (h == ENC_NONE)
+            continue;
+        if (s->twin[h] < h) {
+            h = s->twin[h];
+            back = !back;
+        }
+        const enc_pair other = enc_surface_pair(s, h, back);
+        const uint8_t state = run->edge_state[h];
+        if (!may(state, back) || unclean(state, back) ||
+            !is_free(run, other.child) || !is_free(run, other.parent))
+            continue;
+        const double cost = enc_pricing_estimate(&run->pricing, s, &other);
+        if (cost > run->parallel_limit)
+            continue;
+        double off = 0;
+        for (int k = 0; k < 3; k++) {
+            const int32_t d =
+                s->position[pair->child][k] - s->position[pair->parent][k] -
+                s->position[other.child][k] + s->position[other.parent][k];
+            off += (double)d * d;
+        }
+        const double price = cost + run->pricing.edge_square * off;
+        out[count++] =
+            (enc_entry){ enc_key(PARALLEL_FACTOR * price), entry_id(h, back) };
+    }
+    return count;
+}
+
+static void contract(enc_run *run, const enc_pair *pair, const enc_offer *offer,
+                     double error)
+{
+    enc_schedule *out = run->out;
+    enc_surface *s = &run->surface;
+    const uint32_t index = out->contraction_count++;
+    const int32_t *before = s->position[pair->parent];
+
+    out->contraction[index] = (enc_contraction){
+        .child = pair->child,
+        .parent = pair->parent,
+        .before = { before[0], before[1], before[2] },
+        .error = (float)sqrt(error),
+    };
+    out->vertex_end[pair->child] = index;
+    if (pair->left != ENC_NONE)
+        out->face_end[pair->left / 3] = index;
+    if (pair->right != ENC_NONE)
+        out->face_end[pair->right / 3] = index;
+    run->drift[pair->parent] = (float)error;
+    run->taken[pair->child] = run->taken[pair->parent] =
+        (uint8_t)(out->batch_count + 1);
+    if (s->wedge)
+        enc_wedges_map(s, pair, out->wedge_parent);
+    enc_pricing_contract(&run->pricing, s, pair, offer->place);
+    enc_surface_contract(s, pair, offer->place, out->wedge_parent);
+}
+
+/* Squared distance from the original. Memoryless quadrics see only the mesh
+ * they are made from, so what went before is added. */
+static double total_error(const enc_run *run, const enc_pair *pair,
+                          const enc_offer *offer)
+{
+    const double child = (double)run->drift[pair->child];
+    const double parent = (double)run->drift[pair->parent];
+
+    if (run->config->metric == PMESH_ACCUMULATED)
+        return offer->distance;
+    return offer->distance + (child > parent ? child : parent);
+}
+
+/* Contracts the pair of an entry if that is possible now. */
+static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
+{
+    enc_surface *s = &run->surface;
+    const uint32_t h = entry.id >> 1;
+    const bool back = entry.id & 1;
+
+    if (s->vertex[h] == ENC_NONE)
+        return false;
+    const enc_pair pair = enc_surface_pair(s, h, back);
+    if (!is_free(run, pair.child) || !is_free(run, pair.parent))
+        return false;
+    enc_surface_mark_ring(s, s->vertex[h]);
+    if (!enc_surface_can_join(s, h))
+        return false;
+
+    const enc_offer offer = enc_pricing_offer(&run->pricing, s, &pair);
+    if (!plan->coherent &&
+        offer.cost > STALE_FACTOR * enc_key_cost(entry.key)) {
+        const uint32_t key = enc_key(offer.cost) | (entry.key & ENC_KEY_LAST);
+        if (key > entry.key) {
+            enc_queue_push(&run->queue, (enc_entry){ key, entry.id });
+            return false;
+        }
+    }
+    if (enc_surface_flips(s, &pair, offer.place)) {
+        if (may(run->edge_state[h], !back) && !(run->edge_state[h] & TURNED)) {
+            run->edge_state[h] |= TURNED;
+            enc_queue_push(&run->queue, make_entry(run, h, !back));
+        }
+        return false;
+    }
+    const double error = total_error(run, &pair, &offer);
+    if (error > run->error_limit)
+        return false;
+
+    enc_entry parallel[4];
+    const unsigned count =
+        plan->coherent ? find_parallel(run, &pair, parallel) : 0;
+    contract(run, &pair, &offer, error);
+    for (unsigned i = 0; i < count; i++)
+        enc_queue_push(&run->queue, parallel[i]);
+    return true;
+}
+
+uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
+{
+    uint32_t accepted = 0;
+    enc_entry entry;
+
+    enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
+                      run->out->contraction_count == 0);
+    collect(run);
+    while (accepted < plan->limit && !enc_run_done(run) &&
+           enc_queue_pop(&run->queue, &entry)) {
+        if ((entry.key & ENC_KEY_LAST) && accepted >= CLEAN_SHARE * plan->limit)
+            break;
+        accepted += try_entry(run, plan, entry);
+        report_progress(run);
+    }
+    return accepted;
+}

@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * enc_batch.h - one batch of contractions: disjoint pairs, cheapest first.
+ *
+ * The order. All edges that may be joined on the mesh before the batch are
+ * sorted by their cost there. A pair is taken if both ends are still free and
+ * it may be joined on the mesh as it is now, too. Together the two tests make
+ * the pairs independent: whether two disturb each other (opposite sides of a
+ * quad that has no diagonal; a ring that would get too small) shows in the one
+ * that comes last, and never depends on a third.
+ */
+#ifndef ENC_BATCH_H
+#define ENC_BATCH_H
+
+#include "encoder/enc_candidate.h"
+#include "encoder/enc_queue.h"
+#include "encoder/enc_schedule.h"
+#include "encoder/enc_surface.h"
+
+typedef struct enc_batch_plan {
+    enc_taste taste;
+    uint32_t limit; /* pairs */
+    bool coherent;  /* prefer pairs parallel to those taken */
+} enc_batch_plan;
+
+/* A contraction run; batches leave their mark in `out`. */
+typedef struct enc_run {
+    const enc_mesh *mesh;
+    const pmesh_encoder_config *config;
+    enc_schedule *out;
+    enc_surface surface;
+    enc_pricing pricing;
+    enc_queue queue;
+    uint8_t *edge_state; /* per half-edge: what collecting found */
+    uint8_t *taken;      /* per vertex: batch_count when last in a pair, + 1 */
+    float *drift;        /* per vertex: squared distance from the original */
+    uint32_t face_target, vertex_target;
+    double error_limit;    /* squared, in steps */
+    double parallel_limit; /* cost up to which parallel pairs are preferred */
+    uint32_t tick;         /* candidates seen, for progress */
+    bool cancelled;
+} enc_run;
+
+/* True once the base mesh is reached, or the caller has cancelled. */
+bool enc_run_done(const enc_run *run);
+
+/* Contracts up to plan->limit pairs; appends them to the schedule's list, but
+ * not to its batches. Returns their number. */
+uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan);
+
+#endif

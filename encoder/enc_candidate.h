@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * enc_candidate.h - what a contraction costs, and where the parent goes.
+ *
+ * Quadrics are weighted by area, so costs are in steps^4 (area times distance
+ * squared), and so are the terms for regularity:
+ *
+ *     quadric * Q(place) + length * e^2 |child - parent|^2
+ *                        + uneven * e^2 |child - mean of its ring|^2
+ *
+ * with e the mean edge of the mesh at the start of the batch.
+ */
+#ifndef ENC_CANDIDATE_H
+#define ENC_CANDIDATE_H
+
+#include "encoder/enc_star.h"
+
+/* Weights of the three terms. */
+typedef struct enc_taste {
+    double quadric, length, uneven;
+} enc_taste;
+
+/* The part of a quadric that a move of its vertex brings about. */
+typedef struct enc_moved {
+    double b[3];
+    double c;
+} enc_moved;
+
+typedef struct enc_pricing {
+    pmesh_metric metric;
+    pmesh_placement placement;
+    enc_taste taste;
+    double edge_square; /* e^2 */
+    enc_planes *planes; /* per vertex: its quadric, about its position ... */
+    enc_moved *moved;   /* ... NULL with PMESH_MEMORYLESS */
+    float *unevenness;  /* per vertex: |v - mean of its ring|^2 */
+} enc_pricing;
+
+typedef struct enc_offer {
+    int32_t place[3]; /* where the parent will be */
+    double cost;
+    double distance; /* squared, in steps: the quadric's mean at the place */
+} enc_offer;
+
+pmesh_status enc_pricing_create(const enc_mesh *mesh,
+                                const pmesh_encoder_config *config,
+                                enc_pricing *out);
+void enc_pricing_destroy(const enc_mesh *mesh, enc_pricing *pricing);
+
+/* Brings the quadrics and the mean edge up to date for a new batch; those of
+ * PMESH_ACCUMULATED are made the first time and summed from then on. */
+void enc_pricing_begin(enc_pricing *pricing, const enc_surface *s,
+                       enc_taste taste, bool first_time);
+
+/* From the quadrics at the start of the batch; cheap. With
+ * PMESH_OPTIMAL the place is not on the grid yet and not reported. */
+double enc_pricing_estimate(const enc_pricing *pricing, const enc_surface *s,
+                            const enc_pair *pair);
+
+/* From the surface as it is now; the final word. */
+enc_offer enc_pricing_offer(const enc_pricing *pricing, const enc_surface *s,
+                            const enc_pair *pair);
+
+/* To be told of each contraction before it happens. */
+void enc_pricing_contract(enc_pricing *pricing, const enc_surface *s,
+                          const enc_pair *pair, const int32_t place[3]);
+
+#endif

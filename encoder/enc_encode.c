@@ -1,0 +1,387 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * enc_encode.c - pmesh_encode(): import, contraction, coding, writing.
+ */
+#include <string.h>
+
+#include "encoder/enc_mesh.h"
+#include "encoder/enc_replay.h"
+#include "encoder/enc_schedule.h"
+#include "encoder/enc_stream.h"
+#include "format/alloc.h"
+
+enum {
+    BLOCK_ROOM = 1 << 22,  /* far beyond what a block of 64 KiB can need */
+    BASE_FACE_ROOM = 96,   /* bytes: a face is a few flags and, at most, one */
+    BASE_WEDGE_ROOM = 160, /* vertex of 3 x 24 bits; 32 values of 16 bits */
+    BLOCK_TARGET = PMESH_BLOCK_CHUNK_SIZE - 256
+};
+
+pmesh_encoder_config pmesh_encoder_config_default(void)
+{
+    return (pmesh_encoder_config){
+        .profile = PMESH_BALANCED,
+        .placement = PMESH_SUBSET,
+        .metric = PMESH_MEMORYLESS,
+        .position_bits = 14,
+        .normal_bits = 10,
+        .texcoord_bits = 12,
+        .color_bits = 8,
+        .generic_bits = 12,
+    };
+}
+
+static bool within(unsigned value, unsigned least, unsigned most)
+{
+    return value >= least && value <= most;
+}
+
+/* Not NaN, not infinite, not negative. */
+static bool is_amount(double value)
+{
+    return value - value == 0 && value >= 0;
+}
+
+static bool config_is_sound(const pmesh_encoder_config *c)
+{
+    return within(c->profile, PMESH_COMPACT, PMESH_QUALITY) &&
+           within(c->placement, PMESH_SUBSET, PMESH_OPTIMAL) &&
+           within(c->metric, PMESH_MEMORYLESS, PMESH_ACCUMULATED) &&
+           within(c->position_bits, 4, 24) && within(c->normal_bits, 4, 16) &&
+           within(c->texcoord_bits, 4, 16) && within(c->color_bits, 4, 16) &&
+           within(c->generic_bits, 4, 16) && is_amount(c->weld) &&
+           is_amount(c->threshold) && is_amount(c->base_ratio) &&
+           is_amount(c->base_error) &&
+           !c->allocator.alloc == !c->allocator.release;
+}
+
+/* Everything that one call owns. */
+typedef struct job {
+    pmesh_encoder_config config;
+    pmesh_encode_report *report;
+    enc_mesh mesh;
+    enc_schedule schedule;
+    enc_replay replay;
+    enc_stream stream;
+    pmesh_header_chunk header;
+    float *drift; /* per vertex: bound on its distance from the original */
+    uint8_t *room;
+    size_t room_size;
+} job;
+
+static double now(const job *j)
+{
+    return j->report->clock ? j->report->clock() : 0;
+}
+
+static bool cancelled(const job *j, const char *stage, double done)
+{
+    return j->config.progress &&
+           j->config.progress(j->config.progress_user, stage, done);
+}
+
+/* ---- the level table --------------------------------------------------- */
+
+/* The error of the mesh that contractions 0 .. end - 1 leave, in grid steps: a
+ * vertex stands for its children, whose errors add up along the tree. */
+static float advance_error(job *j, uint32_t first, uint32_t end, float error)
+{
+    for (uint32_t t = first; t < end; t++) {
+        const enc_contraction *c = &j->schedule.contraction[t];
+        float *parent = &j->drift[c->parent];
+        const float child = j->drift[c->child];
+        *parent = (child > *parent ? child : *parent) + c->error;
+        if (*parent > error)
+            error = *parent;
+    }
+    return error;
+}
+
+/* Level k is the mesh after all batches but the last k; filled from the
+ * finest, whose error is 0, to the base. */
+static bool fill_errors(job *j)
+{
+    const enc_schedule *s = &j->schedule;
+    const size_t n = j->mesh.vertex_count;
+    float error = 0;
+    j->drift = pmesh_alloc_zero(&j->config.allocator, n, sizeof *j->drift);
+    if (!j->drift)
+        return false;
+    j->header.levels[s->batch_count].error = 0;
+    for (uint32_t b = 0; b < s->batch_count; b++) {
+        error = advance_error(j, s->batch_first[b], s->batch_first[b + 1],
+                              error);
+        j->header.levels[s->batch_count - b - 1].error =
+            (float)((double)error * j->mesh.grid.step);
+    }
+    pmesh_release(&j->config.allocator, j->drift, n, sizeof *j->drift);
+    j->drift = NULL;
+    return true;
+}
+
+static void finish_level(job *j, uint32_t level)
+{
+    const pmesh_mesh *m = &j->replay.codec.mesh;
+    pmesh_level_entry *e = &j->header.levels[level];
+    e->bytes = j->stream.size;
+    e->faces = m->face_count;
+    e->vertices = m->vertex_count;
+    e->wedges = m->wedge_count;
+}
+
+/* ---- chunks ------------------------------------------------------------ */
+
+static bool make_room(job *j)
+{
+    const size_t base = BASE_FACE_ROOM * (size_t)j->replay.base_faces +
+                        BASE_WEDGE_ROOM * 3 * (size_t)j->replay.base_faces *
+                            (j->mesh.value_count > 0);
+    j->room_size = base > BLOCK_ROOM ? base : BLOCK_ROOM;
+    j->room = pmesh_alloc(&j->config.allocator, j->room_size, 1);
+    return j->room != NULL;
+}
+
+/* Names with their final zeros, one after the other; none if nothing is named
+ * or they would be too long. */
+static void write_names(job *j, const pmesh_mesh_input *in)
+{
+    pmesh_writer out = { j->room, 0, PMESH_MAX_NAMES_SIZE, false };
+    for (uint32_t i = 0; in->material_names && i < in->material_count; i++) {
+        const char *name = in->material_names[i] ? in->material_names[i] : "";
+        for (; *name; name++)
+            pmesh_put(&out, (uint8_t)*name, 1);
+        pmesh_put(&out, 0, 1);
+    }
+    if (out.overflow || out.size == 0)
+        return;
+    j->header.names_size = (uint32_t)out.size;
+    enc_stream_chunk(&j->stream, PMESH_CHUNK_NAMES, j->room,
+                     (uint32_t)out.size);
+}
+
+static pmesh_status write_base(job *j)
+{
+    pmesh_writer out = { j->room, 0, j->room_size, false };
+    pmesh_coder coder;
+    pmesh_coder_encode(&coder, &out);
+    const pmesh_status status = enc_replay_base(&j->replay, &coder);
+    if (status != PMESH_OK)
+        return status;
+    if (!pmesh_coder_finish(&coder) || out.size > PMESH_MAX_CHUNK_SIZE)
+        return PMESH_E_LIMIT;
+    enc_stream_chunk(&j->stream, PMESH_CHUNK_BASE, j->room,
+                     (uint32_t)out.size);
+    j->report->bytes_base = out.size;
+    finish_level(j, 0);
+    return PMESH_OK;
+}
+
+/* What the decoder's view will list: see dec_view.c. */
+static uint32_t count_moved_corners(const pmesh_codec *c)
+{
+    const pmesh_mesh *m = &c->mesh;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < c->block.vertex_count; i++) {
+        const uint32_t start = m->first[c->block.vertex + i];
+        uint32_t h = start;
+        do {
+            count += h < 3 * c->child_face[i];
+            h = pmesh_turn_left(m, h);
+        } while (h != PMESH_NONE && h != start);
+    }
+    return count;
+}
+
+static uint32_t largest(uint32_t a, uint32_t b)
+{
+    return a > b ? a : b;
+}
+
+/* One block of at most `splits` splits; *bits becomes what a split took. */
+static pmesh_status write_block(job *j, uint32_t splits, double *bits)
+{
+    enum { COUNT_ROOM = 5 };
+    enc_replay *r = &j->replay;
+    pmesh_writer head = { j->room, 0, COUNT_ROOM, false };
+    pmesh_put_varint(&head, splits);
+    pmesh_writer out = { j->room + head.size, 0, j->room_size - head.size,
+                         false };
+    pmesh_coder coder;
+    pmesh_coder_encode(&coder, &out);
+    const pmesh_status status = enc_replay_block(r, &coder, splits);
+    if (status != PMESH_OK)
+        return status;
+    if (!pmesh_coder_finish(&coder))
+        return PMESH_E_LIMIT;
+    const size_t size = head.size + out.size;
+    enc_stream_chunk(&j->stream,
+                     r->splits_left ? PMESH_CHUNK_BLOCK
+                                    : PMESH_CHUNK_BLOCK_LAST,
+                     j->room, (uint32_t)size);
+    *bits = 8.0 * (double)size / splits;
+
+    pmesh_codec_sizes *s = &j->header.sizes;
+    s->block_splits = largest(s->block_splits, splits);
+    s->block_wedges = largest(
+        s->block_wedges, j->mesh.value_count ? r->codec.block.wedge_count : 0);
+    j->header.moved_corners += count_moved_corners(&r->codec);
+    return PMESH_OK;
+}
+
+/* A block shall stay below 64 KiB: its splits are expected to cost a quarter
+ * more than those of the block before; the first ones, all their bits. */
+static uint32_t splits_of_block(const job *j, double bits)
+{
+    const double fit = 8.0 * BLOCK_TARGET / (1.25 * bits + 8);
+    const uint32_t limit = fit < 1                        ? 1
+                           : fit < PMESH_MAX_BLOCK_SPLITS ? (uint32_t)fit
+                                                          : PMESH_MAX_BLOCK_SPLITS;
+    return j->replay.splits_left < limit ? j->replay.splits_left : limit;
+}
+
+static double raw_split_bits(const job *j)
+{
+    double bits = 3.0 * j->mesh.grid.bits * (j->replay.moves ? 2 : 1) + 20;
+    for (uint32_t i = 0; i < j->mesh.attribute_count; i++)
+        bits += 2.0 * PMESH_MAX_COMPONENTS * j->mesh.attribute[i].bits;
+    return bits;
+}
+
+static pmesh_status write_levels(job *j)
+{
+    const enc_schedule *s = &j->schedule;
+    double bits = raw_split_bits(j);
+    for (uint32_t level = 1; level <= s->batch_count; level++) {
+        enc_replay_begin(&j->replay, s->batch_count - level);
+        while (j->replay.splits_left) {
+            const pmesh_status status =
+                write_block(j, splits_of_block(j, bits), &bits);
+            if (status != PMESH_OK)
+                return status;
+            if (cancelled(j, "code",
+                          (double)j->replay.codec.mesh.face_count /
+                              j->mesh.face_count))
+                return PMESH_E_CANCELLED;
+        }
+        finish_level(j, level);
+    }
+    return PMESH_OK;
+}
+
+/* ---- the whole --------------------------------------------------------- */
+
+static void fill_header(job *j)
+{
+    pmesh_header_chunk *h = &j->header;
+    const enc_mesh *m = &j->mesh;
+    h->profile = j->config.profile;
+    h->grid = m->grid;
+    memcpy(h->bounds, m->bounds, sizeof h->bounds);
+    h->sizes.value_count = m->value_count;
+    h->sizes.material_count = m->material_count;
+    h->sizes.moves = j->replay.moves;
+    h->attribute_count = m->attribute_count;
+    memcpy(h->attributes, m->attribute, sizeof h->attributes);
+    h->level_count = j->schedule.batch_count + 1;
+}
+
+static void fill_report(job *j, uint64_t header_size, uint64_t file_size)
+{
+    pmesh_encode_report *r = j->report;
+    const pmesh_header_chunk *h = &j->header;
+    const pmesh_codec *c = &j->replay.codec;
+    r->grid = j->mesh.grid;
+    r->faces = c->mesh.face_count;
+    r->vertices = c->mesh.vertex_count;
+    r->wedges = c->mesh.wedge_count;
+    r->base_faces = h->levels[0].faces;
+    r->base_vertices = h->levels[0].vertices;
+    r->level_count = h->level_count;
+    for (uint32_t i = 0; i < h->level_count; i++)
+        r->levels[i] = (pmesh_level){
+            .bytes = header_size + h->levels[i].bytes,
+            .faces = h->levels[i].faces,
+            .mesh_vertices = h->levels[i].vertices,
+            .vertices = h->levels[i].wedges,
+            .error = h->levels[i].error
+        };
+    r->bytes = file_size;
+    r->bytes_connectivity = c->part_size[0];
+    r->bytes_positions = c->part_size[1];
+    r->bytes_attributes = c->part_size[2];
+    r->bytes_header = file_size - r->bytes_base - r->bytes_connectivity -
+                      r->bytes_positions - r->bytes_attributes;
+}
+
+static pmesh_status code(job *j, const pmesh_mesh_input *in)
+{
+    pmesh_status status =
+        enc_replay_create(&j->replay, &j->mesh, &j->schedule,
+                          j->config.placement == PMESH_OPTIMAL);
+    if (status != PMESH_OK)
+        return status;
+    if (!make_room(j) || !fill_errors(j))
+        return PMESH_E_MEMORY;
+    write_names(j, in);
+    status = write_base(j);
+    return status == PMESH_OK ? write_levels(j) : status;
+}
+
+static pmesh_status run(job *j, const pmesh_mesh_input *in, pmesh_write write,
+                        void *user)
+{
+    const double start = now(j);
+    pmesh_status status =
+        enc_mesh_import(in, &j->config, &j->mesh, j->report);
+    if (status != PMESH_OK)
+        return status;
+    const double imported = now(j);
+    j->report->seconds_import = imported - start;
+
+    status = enc_schedule_build(&j->mesh, &j->config, &j->schedule);
+    if (status != PMESH_OK)
+        return status;
+    const double contracted = now(j);
+    j->report->seconds_contract = contracted - imported;
+
+    status = code(j, in);
+    if (status != PMESH_OK)
+        return status;
+    fill_header(j);
+    uint64_t header_size, file_size;
+    status = enc_stream_write(&j->stream, &j->header, write, user,
+                              &header_size, &file_size);
+    if (status != PMESH_OK)
+        return status;
+    j->report->seconds_code = now(j) - contracted;
+    fill_report(j, header_size, file_size);
+    return PMESH_OK;
+}
+
+pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
+                          const pmesh_encoder_config *config,
+                          pmesh_write write, void *user,
+                          pmesh_encode_report *report)
+{
+    pmesh_encode_report unwanted;
+    if (!mesh || !config || !write || !config_is_sound(config))
+        return PMESH_E_ARGUMENT;
+    double (*const clock)(void) = report ? report->clock : NULL;
+    if (!report)
+        report = &unwanted;
+    *report = (pmesh_encode_report){ .clock = clock };
+
+    job j = { .config = *config, .report = report };
+    j.config.allocator = pmesh_allocator_resolve(config->allocator);
+    enc_stream_init(&j.stream, j.config.allocator);
+    const pmesh_status status = run(&j, mesh, write, user);
+
+    pmesh_release(&j.config.allocator, j.drift, j.mesh.vertex_count,
+                  sizeof *j.drift);
+    pmesh_release(&j.config.allocator, j.room, j.room_size, 1);
+    enc_stream_destroy(&j.stream);
+    enc_replay_destroy(&j.replay);
+    enc_schedule_destroy(&j.schedule);
+    enc_mesh_destroy(&j.mesh);
+    return status;
+}

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * enc_replay.h - runs a schedule backwards: from the base mesh up, in step
+ * with the codec, whose oracle it is.
+ *
+ * The codec numbers vertices, faces and wedges as the decoder will; the
+ * enc_mesh keeps the numbers of the import. The replay knows both. The fine
+ * mesh of a level is never built: a corner's vertex there is the nearest
+ * ancestor of its original vertex that lives in that level.
+ */
+#ifndef ENC_REPLAY_H
+#define ENC_REPLAY_H
+
+#include "encoder/enc_mesh.h"
+#include "encoder/enc_schedule.h"
+#include "format/codec.h"
+
+typedef struct enc_replay {
+    const enc_mesh *mesh;
+    const enc_schedule *schedule;
+    pmesh_allocator allocator;
+    pmesh_codec codec;
+    void *block;
+    uint64_t block_size;
+    pmesh_oracle oracle;
+
+    /* From the codec's numbers to those of the import. */
+    uint32_t *corner_of; /* per half-edge */
+    uint32_t *vertex_of;
+    uint32_t *wedge_of; /* NULL without attributes, as all that follows */
+
+    /* From the import's numbers. */
+    uint32_t *born;         /* vertex -> codec's, ENC_NONE if not yet there */
+    uint32_t *wedge_number; /* wedge -> codec's, likewise */
+    uint32_t *label;        /* vertex -> ancestor in the level's fine mesh */
+    uint32_t *wedge_label;
+    uint32_t *split_of;     /* vertex -> its contraction as parent, in the
+                               current batch or a coarser one */
+    uint32_t (*removed)[2]; /* contraction -> faces it removes, or ENC_NONE */
+    int32_t (*position)[3]; /* vertex -> place in the level's fine mesh */
+    uint32_t *wedge_list, *wedge_first; /* vertex -> its wedges */
+
+    bool moves;           /* optimal placement */
+    uint32_t batch;       /* being replayed */
+    uint32_t splits_left; /* of it */
+    uint32_t base_faces, base_vertices;
+    const struct base_mesh *base; /* while it is being coded: enc_base.c */
+} enc_replay;
+
+/* Prepares everything up to the empty codec. Returns PMESH_OK or E_MEMORY. */
+pmesh_status enc_replay_create(enc_replay *r, const enc_mesh *mesh,
+                               const enc_schedule *schedule, bool moves);
+void enc_replay_destroy(enc_replay *r);
+
+/* Codes the base mesh. */
+pmesh_status enc_replay_base(enc_replay *r, pmesh_coder *coder);
+
+/* Labels of the mesh in which contractions 0 .. done - 1 have happened. */
+void enc_replay_label(enc_replay *r, uint32_t done);
+
+/* Starts a batch, counted down from the last one. */
+void enc_replay_begin(enc_replay *r, uint32_t batch);
+
+/* Codes the next `splits` <= splits_left splits of the batch. */
+pmesh_status enc_replay_block(enc_replay *r, pmesh_coder *coder,
+                              uint32_t splits);
+
+#endif

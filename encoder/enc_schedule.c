@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: MIT */
+#include "encoder/enc_schedule.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "encoder/enc_batch.h"
+#include "encoder/enc_wedges.h"
+#include "format/alloc.h"
+
+/* See enc_candidate.h for the terms. Regular batches are as large as a matching
+ * can be and keep the sampling even, which makes the stream small; the others
+ * follow the quadrics, with the length to decide between flat places. Half or
+ * twice any of these changes sizes by less than a hundredth. */
+static const enc_taste REGULAR = { .quadric = 10, .length = 0.75, .uneven = 1 };
+static const enc_taste QUALITY = { .quadric = 1, .length = 1e-7, .uneven = 0 };
+#define REGULAR_SHARE 0.49
+#define QUALITY_SHARE 0.33
+
+/* PMESH_BALANCED: so many regular batches at most, and none that starts below
+ * this share of the vertices. */
+enum { REGULAR_BATCHES = 2 };
+#define REGULAR_VERTICES 0.4
+
+/* The run ends if this many batches in a row take less than a fiftieth. */
+enum { MAX_POOR_BATCHES = 3, POOR_SHARE = 50 };
+
+enum { DEFAULT_BASE_FACES = 200, MIN_BASE_FACES = 4, BASE_DIVISOR = 8 };
+
+static pmesh_status schedule_create(const enc_mesh *mesh, enc_schedule *out)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const size_t n = mesh->vertex_count;
+    enc_schedule s = { .allocator = *a,
+                       .vertex_count = mesh->vertex_count,
+                       .face_count = mesh->face_count,
+                       .wedge_count = mesh->wedge_count };
+
+    s.batch_first =
+        pmesh_alloc_zero(a, PMESH_MAX_LEVELS, sizeof *s.batch_first);
+    s.contraction = pmesh_alloc(a, n, sizeof *s.contraction);
+    s.vertex_end = pmesh_alloc(a, n, sizeof *s.vertex_end);
+    s.face_end = pmesh_alloc(a, mesh->face_count, sizeof *s.face_end);
+    if (mesh->wedge)
+        s.wedge_parent =
+            pmesh_alloc(a, mesh->wedge_count, sizeof *s.wedge_parent);
+    *out = s;
+    if (!s.batch_first || !s.contraction || !s.vertex_end || !s.face_end ||
+        (mesh->wedge && !s.wedge_parent)) {
+        enc_schedule_destroy(out);
+        return PMESH_E_MEMORY;
+    }
+    memset(s.vertex_end, 0xff, n * sizeof *s.vertex_end);
+    memset(s.face_end, 0xff, mesh->face_count * sizeof *s.face_end);
+    if (mesh->wedge)
+        memset(s.wedge_parent, 0xff,
+               mesh->wedge_count * sizeof *s.wedge_parent);
+    return PMESH_OK;
+}
+
+void enc_schedule_destroy(enc_schedule *s)
+{
+    const pmesh_allocator *a = &s->allocator;
+    const size_t n = s->vertex_count;
+
+    if (!a->release)
+        return;
+    pmesh_release(a, s->batch_first, PMESH_MAX_LEVELS, sizeof *s->batch_first);
+    pmesh_release(a, s->contraction, n, sizeof *s->contraction);
+    pmesh_release(a, s->vertex_end, n, sizeof *s->vertex_end);
+    pmesh_release(a, s->position, n, sizeof *s->position);
+    pmesh_release(a, s->face_end, s->face_count, sizeof *s->face_end);
+    pmesh_release(a, s->wedge_parent, s->wedge_count, sizeof *s->wedge_parent);
+    *s = (enc_schedule){ 0 };
+}
+
+/* Edges of a manifold: every half-edge without twin is one, twins share one. */
+static uint32_t count_edges(const enc_mesh *mesh)
+{
+    uint32_t count = 0;
+    for (uint32_t h = 0; h < 3 * mesh->face_count; h++)
+        count += h < mesh->twin[h];
+    return count;
+}
+
+static pmesh_status run_create(const enc_mesh *mesh,
+                               const pmesh_encoder_config *config,
+                               enc_schedule *schedule, enc_run *run)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const size_t n = mesh->vertex_count;
+    pmesh_status status = enc_surface_create(mesh, &run->surface);
+
+    run->mesh = mesh;
+    run->config = config;
+    run->out = schedule;
+    if (status == PMESH_OK)
+        status = enc_pricing_create(mesh, config, &run->pricing);
+    if (status == PMESH_OK)
+        status = enc_queue_create(a, count_edges(mesh), &run->queue);
+    if (status != PMESH_OK)
+        return status;
+    run->edge_state = pmesh_alloc_zero(a, 3 * (size_t)mesh->face_count, 1);
+    run->taken = pmesh_alloc_zero(a, n, sizeof *run->taken);
+    run->drift = pmesh_alloc_zero(a, n, sizeof *run->drift);
+    return run->edge_state && run->taken && run->drift ? PMESH_OK
+                                                       : PMESH_E_MEMORY;
+}
+
+/* Accepts what run_create() left half-built. */
+static void run_destroy(const enc_mesh *mesh, enc_run *run)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+
+    enc_surface_destroy(&run->surface);
+    enc_pricing_destroy(mesh, &run->pricing);
+    if (run->queue.list)
+        enc_queue_destroy(&run->queue);
+    pmesh_release(a, run->edge_state, 3 * (size_t)mesh->face_count, 1);
+    pmesh_release(a, run->taken, mesh->vertex_count, sizeof *run->taken);
+    pmesh_release(a, run->drift, mesh->vertex_count, sizeof *run->drift);
+}
+
+/* Whatever the config names is a stop, and the first one reached counts. */
+static void set_targets(enc_run *run)
+{
+    const pmesh_encoder_config *config = run->config;
+    const uint32_t faces = run->mesh->face_count;
+    uint32_t target = config->base_faces;
+
+    if (target == 0 && config->base_vertices == 0 &&
+        !(config->base_ratio > 0)) {
+        target = faces / BASE_DIVISOR;
+        if (target < MIN_BASE_FACES)
+            target = MIN_BASE_FACES;
+        if (target > DEFAULT_BASE_FACES)
+            target = DEFAULT_BASE_FACES;
+    }
+    if (config->base_ratio > 0) {
+        const double share = config->base_ratio * faces;
+        const uint32_t least = share < faces ? (uint32_t)share : faces;
+        if (target < least)
+            target = least;
+    }
+    run->face_target = target;
+    run->vertex_target = config->base_vertices;
+
+    const double steps = config->base_error / run->mesh->grid.step;
+    run->error_limit = config->base_error > 0 ? steps * steps : INFINITY;
+}
+
+static enc_batch_plan plan_batch(const enc_run *run)
+{
+    const uint32_t n = run->surface.vertex_count;
+    const pmesh_profile profile = run->config->profile;
+    const bool fine = run->out->batch_count < REGULAR_BATCHES &&
+                      n > REGULAR_VERTICES * run->mesh->vertex_count;
+    enc_batch_plan plan = { .taste = QUALITY };
+    double share = QUALITY_SHARE;
+
+    if (profile == PMESH_COMPACT || (profile == PMESH_BALANCED && fine)) {
+        plan.taste = REGULAR;
+        plan.coherent = true;
+        share = REGULAR_SHARE;
+    }
+    plan.limit = (uint32_t)(share * n);
+    if (plan.limit == 0)
+        plan.limit = 1;
+    return plan;
+}
+
+static void run_batches(enc_run *run)
+{
+    enc_schedule *out = run->out;
+    unsigned poor = 0;
+
+    while (!enc_run_done(run) && out->batch_count < PMESH_MAX_LEVELS - 1 &&
+           poor < MAX_POOR_BATCHES) {
+        const enc_batch_plan plan = plan_batch(run);
+        const uint32_t n = run->surface.vertex_count;
+        const uint32_t taken = enc_batch_contract(run, &plan);
+
+        if (taken == 0)
+            break;
+        out->batch_first[++out->batch_count] = out->contraction_count;
+        poor = taken < n / POOR_SHARE ? poor + 1 : 0;
+    }
+}
+
+/* The parent of each vertex goes into scratch that is free by now. */
+static pmesh_status finish_wedges(enc_run *run)
+{
+    const enc_schedule *out = run->out;
+    uint32_t *parent = run->surface.mark;
+
+    for (uint32_t v = 0; v < run->mesh->vertex_count; v++) {
+        const uint32_t end = out->vertex_end[v];
+        parent[v] = end == ENC_NONE ? ENC_NONE : out->contraction[end].parent;
+    }
+    return enc_wedges_finish(run->mesh, parent, out->wedge_parent);
+}
+
+pmesh_status enc_schedule_build(const enc_mesh *mesh,
+                                const pmesh_encoder_config *config,
+                                enc_schedule *out)
+{
+    enc_run run = { 0 };
+    pmesh_status status = schedule_create(mesh, out);
+
+    if (status != PMESH_OK)
+        return status;
+    status = run_create(mesh, config, out, &run);
+    if (status == PMESH_OK) {
+        set_targets(&run);
+        run_batches(&run);
+        out->position = run.surface.position;
+        run.surface.position = NULL;
+        if (run.cancelled)
+            status = PMESH_E_CANCELLED;
+        else if (mesh->wedge)
+            status = finish_wedges(&run);
+    }
+    run_destroy(mesh, &run);
+    if (status != PMESH_OK)
+        enc_schedule_destroy(out);
+    return status;
+}

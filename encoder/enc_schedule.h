@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * enc_schedule.h - which vertex pairs are contracted, in which batch.
+ *
+ * A batch is a set of disjoint pairs (child u -> parent v) contracted on one
+ * mesh; its inverse is one level of the file. Any subset of a batch, in any
+ * order, is a legal mesh: every pair meets the link condition both in the mesh
+ * before the batch and in the mesh with the rest of the batch contracted (the
+ * double link test).
+ *
+ * The record of all contractions is the vertex tree: parent and child by
+ * vertex number of the enc_mesh, which contractions never renumber.
+ */
+#ifndef ENC_SCHEDULE_H
+#define ENC_SCHEDULE_H
+
+#include "encoder/enc_mesh.h"
+
+/* A ring (neighbours of the vertex that will split again, the virtual one
+ * across a boundary included) may have this many members; SPEC 6. */
+#define ENC_MAX_RING 48
+
+/* One contraction: u vanishes, v moves from `before` to its place after. */
+typedef struct enc_contraction {
+    uint32_t child, parent;
+    int32_t before[3]; /* of the parent, grid coordinates, before */
+    float error;       /* distance from the original in grid steps, estimate
+                          of the root mean square around v; >= 0 */
+} enc_contraction;
+
+typedef struct enc_schedule {
+    pmesh_allocator allocator;
+    uint32_t vertex_count, face_count, wedge_count; /* of the enc_mesh */
+
+    uint32_t batch_count;  /* at most PMESH_MAX_LEVELS - 1, none is empty */
+    uint32_t *batch_first; /* batch_count + 1 entries into `contraction`: batch
+                              0 is contracted first, so it is the finest */
+    enc_contraction *contraction; /* in the order of contraction */
+    uint32_t contraction_count;
+
+    /* Per vertex: the contraction that removes it as child, or ENC_NONE. */
+    uint32_t *vertex_end;
+    /* Per vertex: its last position (at death, or in the base mesh). */
+    int32_t (*position)[3];
+    /* Per face: the contraction that removes it, or ENC_NONE. */
+    uint32_t *face_end;
+    /* Per wedge (NULL without attributes): the wedge of the parent vertex that
+     * its surviving corners take when its vertex is contracted; ENC_NONE for
+     * wedges of base vertices. A wedge dies with its vertex. */
+    uint32_t *wedge_parent;
+} enc_schedule;
+
+/* Contracts `mesh` (which is not changed) down to the base mesh that the
+ * config asks for. `progress` may cancel. Returns PMESH_OK or a status of
+ * pmesh_encode() with *out empty. */
+pmesh_status enc_schedule_build(const enc_mesh *mesh,
+                                const pmesh_encoder_config *config,
+                                enc_schedule *out);
+
+void enc_schedule_destroy(enc_schedule *schedule);
+
+#endif

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+#include "encoder/enc_star.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Weights of the planes across a face, per squared length of the edge. */
+#define BOUNDARY_WEIGHT 10.0
+#define BORDER_WEIGHT   3.0
+
+/* A vertex with more seams and borders than this is faceted, not on a line,
+ * and is not held. */
+#define MAX_LINES 4
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void difference(const int32_t a[3], const int32_t b[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = (double)(a[i] - b[i]);
+}
+
+/* True if attributes or materials break along the half-edge h. */
+static bool on_border(const enc_surface *s, uint32_t h)
+{
+    const uint32_t t = s->twin[h];
+    const uint32_t *material = s->mesh->material;
+
+    if (material && material[h / 3] != material[t / 3])
+        return true;
+    return s->wedge && (s->wedge[h] != s->wedge[enc_next(t)] ||
+                        s->wedge[enc_next(h)] != s->wedge[t]);
+}
+
+static bool on_lines(const enc_surface *s, uint32_t v)
+{
+    uint32_t h = s->first[v];
+    unsigned lines = 0;
+
+    do {
+        lines += s->twin[h] != ENC_NONE && on_border(s, h);
+        h = enc_turn(s, h);
+    } while (h != ENC_NONE && h != s->first[v]);
+    return lines > 0 && lines <= MAX_LINES;
+}
+
+/* The plane through the edge of h that stands upright on its face. */
+static void hold_edge(const enc_surface *s, uint32_t h, double weight,
+                      enc_quadric *q)
+{
+    const int32_t *from = s->position[s->vertex[h]];
+    double normal[3], along[3];
+
+    enc_surface_normal(s, h, from, normal);
+    difference(s->position[s->vertex[enc_next(h)]], from, along);
+    const double upright[3] = { along[1] * normal[2] - along[2] * normal[1],
+                                along[2] * normal[0] - along[0] * normal[2],
+                                along[0] * normal[1] - along[1] * normal[0] };
+    if (dot(upright, upright) > 0)
+        enc_quadric_add_plane(q, upright, weight * dot(along, along));
+}
+
+static void add_face(const enc_surface *s, uint32_t h, enc_quadric *q)
+{
+    double normal[3];
+
+    enc_surface_normal(s, h, s->position[s->vertex[h]], normal);
+    const double square = dot(normal, normal);
+    if (square > 0)
+        enc_quadric_add_plane(q, normal, 0.5 * sqrt(square));
+}
+
+/* Seams and borders that meet at v. */
+static void add_lines(const enc_surface *s, uint32_t v, enc_quadric *q)
+{
+    if (!(s->wedge || s->mesh->material) || !on_lines(s, v))
+        return;
+    uint32_t h = s->first[v];
+    do {
+        const uint32_t t = s->twin[h];
+        if (t != ENC_NONE && on_border(s, h)) {
+            hold_edge(s, h, BORDER_WEIGHT, q);
+            hold_edge(s, t, BORDER_WEIGHT, q);
+        }
+        h = enc_turn(s, h);
+    } while (h != ENC_NONE && h != s->first[v]);
+}
+
+void enc_star_quadric(const enc_surface *s, uint32_t v, enc_quadric *q)
+{
+    uint32_t h = s->first[v], last;
+
+    memset(q, 0, sizeof *q);
+    do {
+        add_face(s, h, q);
+        last = enc_prev(h);
+        h = s->twin[last];
+    } while (h != ENC_NONE && h != s->first[v]);
+    if (h == ENC_NONE) {
+        hold_edge(s, s->first[v], BOUNDARY_WEIGHT, q);
+        hold_edge(s, last, BOUNDARY_WEIGHT, q);
+    }
+    add_lines(s, v, q);
+}
+
+static void add_planes(const enc_quadric *q, enc_planes *sum)
+{
+    for (int i = 0; i < 6; i++)
+        sum->a[i] += q->a[i];
+    sum->weight += q->weight;
+}
+
+/* Each face is computed once and added to its corners. */
+void enc_star_all_planes(const enc_surface *s, enc_planes *planes)
+{
+    memset(planes, 0, s->mesh->vertex_count * sizeof *planes);
+    for (uint32_t f = 0; f < s->mesh->face_count; f++) {
+        const uint32_t *corner = &s->vertex[3 * f];
+        enc_quadric face = { .c = 0 };
+
+        if (corner[0] == ENC_NONE)
+            continue;
+        add_face(s, 3 * f, &face);
+        for (unsigned k = 0; k < 3; k++) {
+            add_planes(&face, &planes[corner[k]]);
+            if (s->twin[3 * f + k] == ENC_NONE) {
+                enc_quadric edge = { .c = 0 };
+                hold_edge(s, 3 * f + k, BOUNDARY_WEIGHT, &edge);
+                add_planes(&edge, &planes[corner[k]]);
+                add_planes(&edge, &planes[corner[(k + 1) % 3]]);
+            }
+        }
+    }
+    if (!s->wedge && !s->mesh->material)
+        return;
+    for (uint32_t v = 0; v < s->mesh->vertex_count; v++) {
+        enc_quadric lines = { .c = 0 };
+        if (s->first[v] == ENC_NONE)
+            continue;
+        add_lines(s, v, &lines);
+        add_planes(&lines, &planes[v]);
+    }
+}
+
+double enc_star_unevenness(const enc_surface *s, uint32_t v, double *length)
+{
+    double sum[3] = { 0, 0, 0 }, d[3];
+    uint32_t h = s->first[v], last, count = 0;
+
+    *length = 0;
+    do {
+        difference(s->position[s->vertex[enc_next(h)]], s->position[v], d);
+        for (int i = 0; i < 3; i++)
+            sum[i] += d[i];
+        *length += dot(d, d);
+        count++;
+        last = enc_prev(h);
+        h = s->twin[last];
+    } while (h != ENC_NONE && h != s->first[v]);
+    if (h == ENC_NONE) {
+        difference(s->position[s->vertex[last]], s->position[v], d);
+        for (int i = 0; i < 3; i++)
+            sum[i] += d[i];
+        count++;
+    }
+    return dot(sum, sum) / ((double)count * count);
+}
+
+void enc_star_volume(const enc_surface *s, uint32_t v, uint32_t other,
+                     const double offset[3], enc_plane *keep)
+{
+    uint32_t h = s->first[v];
+    do {
+        if (s->vertex[enc_next(h)] != other &&
+            s->vertex[enc_prev(h)] != other) {
+            double n[3];
+            enc_surface_normal(s, h, s->position[v], n);
+            for (int i = 0; i < 3; i++)
+                keep->n[i] += n[i];
+            keep->offset += dot(n, offset);
+        }
+        h = enc_turn(s, h);
+    } while (h != ENC_NONE && h != s->first[v]);
+}

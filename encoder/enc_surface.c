@@ -1,0 +1,230 @@
+/* SPDX-License-Identifier: MIT */
+#include "encoder/enc_surface.h"
+
+#include <string.h>
+
+#include "encoder/enc_schedule.h"
+#include "format/alloc.h"
+
+/* A face may turn by up to about 78 degrees: cos^2 of it. */
+#define MIN_COSINE_SQUARED 0.04
+
+static void find_first(enc_surface *s)
+{
+    const uint32_t corner_count = 3 * s->face_count;
+
+    memset(s->first, 0xff, s->vertex_count * sizeof *s->first);
+    memset(s->degree, 0, s->vertex_count * sizeof *s->degree);
+    for (uint32_t h = 0; h < corner_count; h++) {
+        const uint32_t v = s->vertex[h];
+        const bool boundary = s->twin[h] == ENC_NONE;
+
+        if (s->first[v] == ENC_NONE || boundary)
+            s->first[v] = h;
+        /* An open fan has one neighbour more than faces, and the ghost. */
+        s->degree[v] += boundary ? 3 : 1;
+    }
+}
+
+pmesh_status enc_surface_create(const enc_mesh *mesh, enc_surface *out)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const size_t n = mesh->vertex_count, corners = 3 * (size_t)mesh->face_count;
+    enc_surface s = { .mesh = mesh,
+                      .vertex_count = mesh->vertex_count,
+                      .face_count = mesh->face_count };
+
+    s.vertex = pmesh_alloc(a, corners, sizeof *s.vertex);
+    s.twin = pmesh_alloc(a, corners, sizeof *s.twin);
+    if (mesh->wedge)
+        s.wedge = pmesh_alloc(a, corners, sizeof *s.wedge);
+    s.first = pmesh_alloc(a, n, sizeof *s.first);
+    s.degree = pmesh_alloc(a, n, sizeof *s.degree);
+    s.position = pmesh_alloc(a, n, sizeof *s.position);
+    s.mark = pmesh_alloc_zero(a, n, sizeof *s.mark);
+    *out = s;
+    if (!s.vertex || !s.twin || (mesh->wedge && !s.wedge) || !s.first ||
+        !s.degree || !s.position || !s.mark) {
+        enc_surface_destroy(out);
+        return PMESH_E_MEMORY;
+    }
+    memcpy(s.vertex, mesh->vertex, corners * sizeof *s.vertex);
+    memcpy(s.twin, mesh->twin, corners * sizeof *s.twin);
+    if (mesh->wedge)
+        memcpy(s.wedge, mesh->wedge, corners * sizeof *s.wedge);
+    memcpy(s.position, mesh->position, n * sizeof *s.position);
+    find_first(out);
+    return PMESH_OK;
+}
+
+void enc_surface_destroy(enc_surface *s)
+{
+    const enc_mesh *mesh = s->mesh;
+
+    if (!mesh)
+        return;
+    const pmesh_allocator *a = &mesh->allocator;
+    const size_t n = mesh->vertex_count, corners = 3 * (size_t)mesh->face_count;
+    pmesh_release(a, s->vertex, corners, sizeof *s->vertex);
+    pmesh_release(a, s->twin, corners, sizeof *s->twin);
+    pmesh_release(a, s->wedge, corners, sizeof *s->wedge);
+    pmesh_release(a, s->first, n, sizeof *s->first);
+    pmesh_release(a, s->degree, n, sizeof *s->degree);
+    pmesh_release(a, s->position, n, sizeof *s->position);
+    pmesh_release(a, s->mark, n, sizeof *s->mark);
+    *s = (enc_surface){ 0 };
+}
+
+enc_pair enc_surface_pair(const enc_surface *s, uint32_t h, bool child_is_end)
+{
+    const uint32_t start = s->vertex[h], end = s->vertex[enc_next(h)];
+
+    if (child_is_end)
+        return (enc_pair){ end, start, s->twin[h], h };
+    return (enc_pair){ start, end, h, s->twin[h] };
+}
+
+void enc_surface_mark_ring(enc_surface *s, uint32_t v)
+{
+    if (++s->stamp == 0) {
+        memset(s->mark, 0, s->mesh->vertex_count * sizeof *s->mark);
+        s->stamp = 1;
+    }
+    uint32_t h = s->first[v], last;
+    do {
+        s->mark[s->vertex[enc_next(h)]] = s->stamp;
+        last = enc_prev(h);
+        h = s->twin[last];
+    } while (h != ENC_NONE && h != s->first[v]);
+    s->mark[s->vertex[last]] = s->stamp;
+}
+
+static bool wing_can_spare(const enc_surface *s, uint32_t h)
+{
+    return h == ENC_NONE || s->degree[s->vertex[enc_prev(h)]] >= 4;
+}
+
+bool enc_surface_can_join(const enc_surface *s, uint32_t h)
+{
+    const uint32_t u = s->vertex[h], v = s->vertex[enc_next(h)];
+    const uint32_t twin = s->twin[h];
+    /* Each end leaves the other's ring; two members were in both. */
+    const uint64_t merged = (uint64_t)s->degree[u] + s->degree[v] - 4;
+
+    if (merged < 3 || merged > ENC_MAX_RING)
+        return false;
+    if (!wing_can_spare(s, h) || !wing_can_spare(s, twin))
+        return false;
+    if (twin != ENC_NONE && enc_on_boundary(s, u) && enc_on_boundary(s, v))
+        return false;
+
+    uint32_t common = 0, last;
+    h = s->first[v];
+    do {
+        common += s->mark[s->vertex[enc_next(h)]] == s->stamp;
+        last = enc_prev(h);
+        h = s->twin[last];
+    } while (h != ENC_NONE && h != s->first[v]);
+    if (h == ENC_NONE)
+        common += s->mark[s->vertex[last]] == s->stamp;
+    return common == (twin == ENC_NONE ? 1 : 2);
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The faces of v except those that contain `other`. */
+static bool fan_flips(const enc_surface *s, uint32_t v, uint32_t other,
+                      const int32_t place[3])
+{
+    uint32_t h = s->first[v];
+    do {
+        if (s->vertex[enc_next(h)] != other &&
+            s->vertex[enc_prev(h)] != other) {
+            double before[3], after[3];
+            enc_surface_normal(s, h, s->position[v], before);
+            enc_surface_normal(s, h, place, after);
+
+            const double old = dot(before, before), now = dot(after, after);
+            const double turn = dot(before, after);
+            if (old > 0 &&
+                (turn <= 0 || turn * turn < MIN_COSINE_SQUARED * old * now))
+                return true;
+        }
+        h = enc_turn(s, h);
+    } while (h != ENC_NONE && h != s->first[v]);
+    return false;
+}
+
+bool enc_surface_flips(const enc_surface *s, const enc_pair *pair,
+                       const int32_t place[3])
+{
+    const int32_t *stay = s->position[pair->parent];
+    const bool moves = memcmp(stay, place, sizeof s->position[0]) != 0;
+
+    return fan_flips(s, pair->child, pair->parent, place) ||
+           (moves && fan_flips(s, pair->parent, pair->child, place));
+}
+
+/* Removes the face of h, gluing its two outer sides together. */
+static void remove_face(enc_surface *s, uint32_t h)
+{
+    const uint32_t next = enc_next(h), prev = enc_prev(h);
+    const uint32_t in = s->twin[next], out = s->twin[prev];
+    const uint32_t wing = s->vertex[prev];
+
+    /* Not both are NONE: the wing's ring had four members. */
+    if (in != ENC_NONE)
+        s->twin[in] = out;
+    if (out != ENC_NONE)
+        s->twin[out] = in;
+    if (s->first[wing] == prev)
+        s->first[wing] = in;
+    s->degree[wing]--;
+    s->vertex[h] = s->vertex[next] = s->vertex[prev] = ENC_NONE;
+    s->face_count--;
+}
+
+/* The half-edge from which the merged fan is to be turned. `next` lies in the
+ * face that dies with its half-edge h and has the same start once merged. */
+static uint32_t merged_first(const enc_surface *s, const enc_pair *pair)
+{
+    const uint32_t left = pair->left, right = pair->right;
+
+    if (!enc_on_boundary(s, pair->parent))
+        return s->twin[enc_prev(left)]; /* child -> left wing */
+    if (left == ENC_NONE) {
+        /* The boundary arrived by the dying edge, parent -> child. */
+        const uint32_t first = s->first[pair->child];
+        return first == enc_next(right) ? s->twin[enc_prev(right)] : first;
+    }
+    const uint32_t first = s->first[pair->parent];
+    return first == enc_next(left) ? s->twin[enc_prev(left)] : first;
+}
+
+void enc_surface_contract(enc_surface *s, const enc_pair *pair,
+                          const int32_t place[3], const uint32_t *wedge_parent)
+{
+    const uint32_t u = pair->child, v = pair->parent;
+    const uint32_t first = merged_first(s, pair);
+
+    uint32_t h = s->first[u];
+    do {
+        s->vertex[h] = v;
+        if (s->wedge)
+            s->wedge[h] = wedge_parent[s->wedge[h]];
+        h = enc_turn(s, h);
+    } while (h != ENC_NONE && h != s->first[u]);
+
+    if (pair->left != ENC_NONE)
+        remove_face(s, pair->left);
+    if (pair->right != ENC_NONE)
+        remove_face(s, pair->right);
+    s->first[u] = ENC_NONE;
+    s->first[v] = first;
+    s->degree[v] += s->degree[u] - 4;
+    memcpy(s->position[v], place, sizeof s->position[0]);
+    s->vertex_count--;
+}

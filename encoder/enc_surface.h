@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * enc_surface.h - the surface while it is being contracted: connectivity that
+ * shrinks in place, with the numbers of the enc_mesh it was made from.
+ *
+ *          left               A pair is known by a half-edge h of it. The child
+ *         /    \              vanishes into the parent, and with it the face on
+ *     child -> parent         either side; across a boundary stands the ghost,
+ *         \    /              one vertex joined to every boundary vertex. The
+ *          right              outer vertices of the two faces are the wings.
+ */
+#ifndef ENC_SURFACE_H
+#define ENC_SURFACE_H
+
+#include <stdbool.h>
+
+#include "encoder/enc_mesh.h"
+
+typedef struct enc_surface {
+    const enc_mesh *mesh;
+    uint32_t *vertex; /* per half-edge: its start; ENC_NONE in dead faces */
+    uint32_t *twin;   /* per half-edge */
+    uint32_t *wedge;  /* per corner, NULL without attributes */
+    uint32_t *first;  /* per vertex: a half-edge that leaves it, at a boundary
+                         the one without twin; ENC_NONE if it is dead */
+    uint32_t *degree; /* per vertex: ring members, the ghost included */
+    int32_t (*position)[3];
+    uint32_t vertex_count, face_count; /* alive */
+    uint32_t *mark; /* per vertex: scratch of enc_surface_mark_ring() */
+    uint32_t stamp;
+} enc_surface;
+
+/* A directed pair: where the child goes, and the half-edges between the two. */
+typedef struct enc_pair {
+    uint32_t child, parent;
+    uint32_t left;  /* child -> parent, or ENC_NONE at the boundary */
+    uint32_t right; /* parent -> child, or ENC_NONE at the boundary */
+} enc_pair;
+
+pmesh_status enc_surface_create(const enc_mesh *mesh, enc_surface *out);
+void enc_surface_destroy(enc_surface *surface);
+
+static inline uint32_t enc_next(uint32_t h)
+{
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+static inline uint32_t enc_prev(uint32_t h)
+{
+    return h % 3 == 0 ? h + 2 : h - 1;
+}
+
+/*
+ * Visits the half-edges that leave v, counter-clockwise:
+ *
+ *     uint32_t h = s->first[v];
+ *     do {
+ *         ...
+ *         h = enc_turn(s, h);
+ *     } while (h != ENC_NONE && h != s->first[v]);
+ *
+ * At a boundary the last face's enc_prev(h) comes from one more neighbour.
+ */
+static inline uint32_t enc_turn(const enc_surface *s, uint32_t h)
+{
+    return s->twin[enc_prev(h)];
+}
+
+static inline bool enc_on_boundary(const enc_surface *s, uint32_t v)
+{
+    return s->twin[s->first[v]] == ENC_NONE;
+}
+
+/* The pair of half-edge h; its child is the start of h, or the end. */
+enc_pair enc_surface_pair(const enc_surface *s, uint32_t h, bool child_is_end);
+
+/* Gives the neighbours of v the current stamp. */
+void enc_surface_mark_ring(enc_surface *s, uint32_t v);
+
+/*
+ * True if contracting h leaves an oriented manifold whose rings have 3 to
+ * ENC_MAX_RING members: the two ends have no common neighbours but the wings
+ * (link condition, the ghost being a vertex), and a wing has one to spare.
+ * The ring of the start of h must be marked.
+ *
+ * What dies is never the last face of a piece, nor does a closed piece get
+ * fewer than four: the wings' rings would be too small.
+ */
+bool enc_surface_can_join(const enc_surface *s, uint32_t h);
+
+/* True if a face around the pair would turn over or lose its area, were both
+ * ends moved to `place`. Faces that have no area already are free. */
+bool enc_surface_flips(const enc_surface *s, const enc_pair *pair,
+                       const int32_t place[3]);
+
+/*
+ * Contracts the pair, which must be one that can be joined; the parent moves
+ * to `place`. With attributes, corners of the child get the wedge that
+ * wedge_parent[] names for theirs.
+ */
+void enc_surface_contract(enc_surface *s, const enc_pair *pair,
+                          const int32_t place[3], const uint32_t *wedge_parent);
+
+/* Twice the area times the normal of the face of h, with `from` at the start
+ * of h: exact up to 2^24 steps, so a face without area gives zeros. */
+static inline void enc_surface_normal(const enc_surface *s, uint32_t h,
+                                      const int32_t from[3], double out[3])
+{
+    const int32_t *p = s->position[s->vertex[enc_next(h)]];
+    const int32_t *q = s->position[s->vertex[enc_prev(h)]];
+    const double a[3] = { (double)(p[0] - from[0]), (double)(p[1] - from[1]),
+                          (double)(p[2] - from[2]) };
+    const double b[3] = { (double)(q[0] - from[0]), (double)(q[1] - from[1]),
+                          (double)(q[2] - from[2]) };
+
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+#endif

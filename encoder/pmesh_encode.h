@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * pmesh_encode.h - bakes a triangle mesh into a progressive .pmesh stream.
+ *
+ *   pmesh_encoder_config config = pmesh_encoder_config_default();
+ *   pmesh_mesh_input mesh = {
+ *       .positions = xyz, .vertex_count = nv, .indices = tri, .face_count = nf
+ *   };
+ *   pmesh_encode_report report;
+ *   pmesh_status status =
+ *       pmesh_encode(&mesh, &config, my_write, my_file, &report);
+ *
+ * Vertex pairs are contracted in the order of quadric error metrics (Garland
+ * and Heckbert 1997, 1998), batch by batch; the contractions, reversed, are
+ * the vertex splits of the file (Hoppe 1996).
+ *
+ * Any triangle soup is legal: open, non-manifold, unoriented, self-crossing,
+ * in pieces. No face is lost at full detail except those the report counts.
+ *
+ * The same input and config give the same bytes on every machine, whatever
+ * `threads` is. The bytes may differ between versions of this library.
+ */
+#ifndef PMESH_ENCODE_H
+#define PMESH_ENCODE_H
+
+#include "format/pmesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/*
+ * One attribute channel: `count` tuples of `components` floats, `stride` bytes
+ * apart (0: packed). `indices` names the tuple of every corner (3 per face),
+ * or is NULL if tuples go with the position indices (then count must be at
+ * least vertex_count). NaN and infinities are replaced by 0 and counted.
+ */
+typedef struct pmesh_attribute_input {
+    pmesh_attribute_kind kind;
+    uint8_t set;
+    uint8_t components; /* 3 for normals, 2 texcoords, 3..4 colours, 1..4 */
+    uint8_t bits;       /* 4..16; 0: the config's default for the kind */
+    const float *values;
+    size_t count;
+    size_t stride;
+    const uint32_t *indices;
+} pmesh_attribute_input;
+
+/*
+ * A triangle mesh, borrowed for the call. Positions are `position_stride`
+ * bytes apart (0: packed xyz). Positions of equal value are one vertex.
+ */
+typedef struct pmesh_mesh_input {
+    const double *positions;
+    size_t vertex_count;
+    size_t position_stride;
+    const uint32_t *indices; /* 3 per face, counter-clockwise from outside */
+    size_t face_count;
+    const uint32_t *materials; /* per face, < material_count; NULL: all 0 */
+    uint32_t material_count;   /* 0 stands for 1 */
+    const char *const *material_names; /* UTF-8, NULL or material_count */
+    const pmesh_attribute_input *attributes;
+    size_t attribute_count; /* at most PMESH_MAX_ATTRIBUTES */
+} pmesh_mesh_input;
+
+typedef enum pmesh_metric {
+    PMESH_MEMORYLESS = 0, /* quadrics of the current surface: most accurate */
+    PMESH_ACCUMULATED = 1 /* quadrics summed from the original (1997) */
+} pmesh_metric;
+
+/* Called now and then with done in 0 .. 1; a non-zero return cancels. */
+typedef int (*pmesh_progress)(void *user, const char *stage, double done);
+
+typedef struct pmesh_encoder_config {
+    pmesh_allocator allocator;
+    pmesh_profile profile;     /* default PMESH_BALANCED */
+    pmesh_placement placement; /* default PMESH_SUBSET */
+    pmesh_metric metric;       /* default: the one measured best */
+    uint8_t position_bits;     /* 4 .. 24, default 14 */
+    uint8_t normal_bits;       /* 4 .. 16 per octahedral component, default 10 */
+    uint8_t texcoord_bits;     /* 4 .. 16, default 12 */
+    uint8_t color_bits;        /* 4 .. 16, default 8 */
+    uint8_t generic_bits;      /* 4 .. 16, default 12 */
+    double weld;               /* join positions this close, model units; 0:
+                                  only equal ones */
+    double threshold;          /* also contract unconnected vertices closer than
+                                  this (model units); 0 (default): edges only */
+    uint32_t base_faces;       /* stop at this many faces; 0: about 200 */
+    uint32_t base_vertices;    /* ... or this many vertices; 0: no such stop */
+    double base_ratio;         /* ... or this share of the faces; 0: no stop */
+    double base_error;         /* ... or when the next contraction would exceed
+                                  this distance, model units; 0: no such stop */
+    uint32_t threads;          /* 0 or 1: this thread only */
+    pmesh_progress progress;   /* NULL: none */
+    void *progress_user;
+} pmesh_encoder_config;
+
+PMESH_API pmesh_encoder_config pmesh_encoder_config_default(void);
+
+/* What the encoder did. Counts are of the input unless they say otherwise. */
+typedef struct pmesh_encode_report {
+    pmesh_grid grid;
+    uint32_t input_faces, input_vertices;
+    uint32_t degenerate_faces;    /* dropped: two corners at one position */
+    uint32_t duplicate_faces;     /* dropped: exact copies */
+    uint32_t not_finite_faces;    /* dropped: a NaN or infinite position */
+    uint32_t not_finite_values;   /* attribute tuples repaired */
+    uint32_t welded_vertices;     /* joined with another of equal position */
+    uint32_t unused_vertices;     /* no face uses them */
+    uint32_t cut_vertices;        /* added where the surface is not manifold */
+    uint32_t components;          /* connected pieces of the surface */
+    uint32_t faces, vertices, wedges; /* full detail of the file */
+    uint32_t base_faces, base_vertices;
+    uint32_t level_count;
+    pmesh_level levels[PMESH_MAX_LEVELS];
+    uint64_t bytes;               /* the file */
+    uint64_t bytes_header, bytes_base, bytes_connectivity, bytes_positions,
+        bytes_attributes;         /* its parts, chunk framing in bytes_header */
+    double seconds_import, seconds_contract, seconds_code; /* 0: no clock */
+    double (*clock)(void);        /* in: seconds, or NULL */
+    uint64_t error_index;         /* with E_INDEX, E_NOT_FINITE: which face */
+} pmesh_encode_report;
+
+/* Takes the next `size` bytes of the file; non-zero reports a failure. */
+typedef int (*pmesh_write)(void *user, const void *data, size_t size);
+
+/*
+ * Bakes `mesh` and writes the file front to back through `write`. Input is
+ * checked, not trusted: any values give a status, never undefined behaviour.
+ *
+ * report: NULL or filled as far as the call came; set report->clock (or zero
+ * the struct) before the call.
+ *
+ * Returns PMESH_OK, E_ARGUMENT (config out of range), E_MEMORY, E_LIMIT (more
+ * than 2^30 corners), E_CANCELLED, E_WRITE, E_NO_FACES, E_INDEX, E_NOT_FINITE
+ * (every face has a position that is not finite). On failure nothing has been
+ * written, except with E_WRITE.
+ */
+PMESH_API pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
+                                    const pmesh_encoder_config *config,
+                                    pmesh_write write, void *user,
+                                    pmesh_encode_report *report);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

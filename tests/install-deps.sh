@@ -1,0 +1,82 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Usage: tests/install-deps.sh [--check] GROUP...   (groups: build test bench)
+#
+# Installs the Debian packages of what is missing, by apt-get as root or
+# through sudo. If nothing is missing it does nothing, offline too. --check
+# only says what is missing.
+set -u
+missing=
+
+# need PACKAGE COMMAND...: the package is missing if the command fails
+need() {
+    package=$1
+    shift
+    "$@" >/dev/null 2>&1 || missing="$missing $package"
+}
+
+program() {
+    command -v "$1"
+}
+
+header() {
+    echo "#include <$1>" |
+        ${CXX:-c++} -std=c++17 ${CXXFLAGS:-} -E -x c++ -
+}
+
+group_build() {
+    need gcc program "${CC:-cc}"
+    need g++ program "${CXX:-c++}"
+    need binutils program "${AR:-ar}"
+    need libdraco-dev header draco/draco_features.h
+    need libmeshoptimizer-dev header meshoptimizer.h
+    need libstb-dev header stb/stb_image_write.h
+    need libtinygltf-dev header tiny_gltf.h
+    need nlohmann-json3-dev header nlohmann/json.hpp
+}
+
+group_test() {
+    need draco program draco_decoder
+    need pkg-config program pkg-config
+}
+
+group_bench() {
+    need draco program draco_encoder
+    need libcgal-dev header CGAL/version.h
+    need libeigen3-dev header eigen3/Eigen/Core
+    need time test -x /usr/bin/time
+}
+
+only_check=false
+if [ "${1-}" = --check ]; then
+    only_check=true
+    shift
+fi
+for group; do
+    "group_$group"
+done
+
+[ -n "$missing" ] || exit 0
+if $only_check; then
+    echo "missing:$missing (install with: make deps)" >&2
+    exit 1
+fi
+if ! command -v apt-get >/dev/null; then
+    echo "missing:$missing (these are Debian's names; install by hand)" >&2
+    exit 1
+fi
+sudo=
+if [ "$(id -u)" != 0 ]; then
+    if ! sudo -n true 2>/dev/null; then
+        echo "missing:$missing (as root: apt-get install$missing)" >&2
+        exit 1
+    fi
+    sudo="sudo -n"
+fi
+
+echo "installing$missing"
+apt="$sudo env DEBIAN_FRONTEND=noninteractive apt-get -q"
+apt="$apt -o DPkg::Lock::Timeout=600"
+$apt update || echo "package lists not updated; trying with the old ones" >&2
+# shellcheck disable=SC2086 # words on purpose
+exec $apt install -y --no-install-recommends $missing

@@ -1,0 +1,83 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Usage: PMESH=build/release/pmesh tests/package/run.sh
+# What a user of the libraries meets: install, pkg-config, the static and the
+# shared library from C and C++, uninstall, and a build without the Makefile.
+set -u
+config=$(basename "$(dirname "$PMESH")")
+if [ "$config" = sanitize ]; then
+    echo "package: skipped, a sanitized library is not for installing"
+    exit 0
+fi
+dir=$(mktemp -d) || exit 1
+trap 'rm -rf "$dir"' EXIT
+unset MAKEFLAGS MFLAGS
+passed=0
+failed=0
+
+# try NAME COMMAND...
+try() {
+    name=$1
+    shift
+    if "$@" >"$dir/log" 2>&1; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "package: $name failed"
+        tail -n 20 "$dir/log"
+    fi
+}
+
+tree() {
+    make config="$config" DESTDIR="$dir/root" PREFIX=/opt/pmesh "$@"
+}
+
+flags() {
+    PKG_CONFIG_SYSROOT_DIR=$dir/root \
+        PKG_CONFIG_PATH=$dir/root/opt/pmesh/lib/pkgconfig pkg-config "$@" pmesh
+}
+
+# shellcheck disable=SC2046 # words on purpose
+shared() {
+    "$@" "$dir/user.c" $(flags --cflags --libs) -o "$dir/user" &&
+        LD_LIBRARY_PATH=$dir/root/opt/pmesh/lib "$dir/user"
+}
+
+# shellcheck disable=SC2046
+static() {
+    "${CC:-cc}" "$dir/user.c" $(flags --cflags) \
+        "$dir/root/opt/pmesh/lib/libpmesh-dec.a" -o "$dir/user" && "$dir/user"
+}
+
+without_makefile() {
+    root=$PWD
+    (cd "$dir" && "${CC:-cc}" -std=c11 -O2 -I"$root" -c \
+        "$root"/format/*.c "$root"/decoder/*.c)
+}
+
+nothing_left() {
+    test -z "$(find "$dir/root" ! -type d)"
+}
+
+cat >"$dir/user.c" <<'C'
+#include <pmesh_decode.h>
+int main(void)
+{
+    pmesh_decoder *dec;
+    if (pmesh_decoder_create(&dec, 0) != PMESH_OK)
+        return 1;
+    pmesh_decoder_destroy(dec);
+    return 0;
+}
+C
+try install tree install
+try program "$dir/root/opt/pmesh/bin/pmesh" --version
+try shared_from_c shared "${CC:-cc}"
+try shared_from_cxx shared "${CXX:-c++}" -x c++
+try static_decoder static
+try soname test -e "$dir/root/opt/pmesh/lib/libpmesh.so.0"
+try without_makefile without_makefile
+try uninstall tree uninstall
+try nothing_left nothing_left
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]

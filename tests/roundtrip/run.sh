@@ -1,0 +1,104 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Usage: PMESH=build/release/pmesh tests/roundtrip/run.sh
+#
+# From a mesh to a file and back: at full detail within half a grid cell, at a
+# face budget within a split, from half of the bytes, and the same bytes again.
+# Takes our own sample and the models of PMESH_MODELS (../shared/models), if
+# they are there.
+set -u
+PMESH_MODELS=${PMESH_MODELS:-../shared/models}
+dir=$(mktemp -d) || exit 1
+trap 'rm -rf "$dir"' EXIT
+passed=0
+failed=0
+
+# try NAME COMMAND...
+try() {
+    if "$2" >"$dir/log" 2>&1; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "roundtrip: $1: $2 failed"
+        tail -n 5 "$dir/log"
+    fi
+}
+
+# The first number behind a key of `pmesh info`.
+info() {
+    "$PMESH" info --json "$dir/a.pmesh" |
+        sed -n "s/.*\"$1\": *\([-+.0-9eE]*\).*/\1/p" | head -n 1
+}
+
+faces() {
+    grep -c '^f ' "$1"
+}
+
+verifies() {
+    "$PMESH" verify "$dir/a.pmesh"
+}
+
+# Half the diagonal of a cell is 0.866 steps.
+full_detail_is_the_input() {
+    "$PMESH" extract -q "$dir/a.pmesh" -o "$dir/full.obj" &&
+        test "$(faces "$dir/full.obj")" = "$(info faces)" &&
+        "$PMESH" compare "$model" "$dir/full.obj" --samples 20000 \
+            --fail-above "$(awk -v s="$(info step)" 'BEGIN { print s * 0.867 }')"
+}
+
+budget_is_met() {
+    full=$(info faces)
+    base=$(info base_faces)
+    for budget in $((full / 2)) $((full / 10)) $((full / 50)); do
+        [ "$budget" -ge "$base" ] || continue
+        "$PMESH" extract -q "$dir/a.pmesh" --faces $budget \
+            -o "$dir/level.obj" || return 1
+        count=$(faces "$dir/level.obj")
+        echo "$count faces for a budget of $budget"
+        test "$count" -le $budget && test "$count" -ge $((budget - 2)) ||
+            return 1
+    done
+}
+
+half_the_bytes_are_a_mesh() {
+    head -c $(($(info bytes) / 2)) "$dir/a.pmesh" >"$dir/half.pmesh"
+    "$PMESH" extract "$dir/half.pmesh" -o "$dir/half.obj" &&
+        test "$(faces "$dir/half.obj")" -ge "$(info base_faces)"
+}
+
+bytes_are_the_same_again() {
+    # shellcheck disable=SC2086 # words on purpose
+    "$PMESH" bake -q "$model" -o "$dir/b.pmesh" -j 2 $options &&
+        cmp "$dir/a.pmesh" "$dir/b.pmesh"
+}
+
+# roundtrip MODEL BAKE_OPTIONS
+roundtrip() {
+    model=$1
+    options=$2
+    name="$(basename "$model") $options"
+    # shellcheck disable=SC2086
+    if ! "$PMESH" bake -q "$model" -o "$dir/a.pmesh" $options >/dev/null; then
+        failed=$((failed + 1))
+        echo "roundtrip: $name: bake failed"
+        return
+    fi
+    try "$name" verifies
+    try "$name" full_detail_is_the_input
+    try "$name" budget_is_met
+    try "$name" half_the_bytes_are_a_mesh
+    try "$name" bytes_are_the_same_again
+}
+
+"$PMESH" sample -o "$dir/sample.obj" || exit 1
+for profile in compact balanced quality; do
+    roundtrip "$dir/sample.obj" "--profile $profile"
+done
+roundtrip "$dir/sample.obj" "--profile quality --placement optimal"
+roundtrip "$dir/sample.obj" "--no-attributes --position-bits 8"
+roundtrip "$dir/sample.obj" "--position-bits 20"
+for model in "$PMESH_MODELS"/*.obj; do
+    [ -e "$model" ] && roundtrip "$model" ""
+done
+echo "$passed passed, $failed failed"
+[ "$failed" = 0 ]

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: MIT */
+/* Damage is noticed; and where checksums are forged, it does no harm. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/crc32c.h"
+#include "format/cursor.h"
+#include "format/layout.h"
+#include "tests/unit/shapes.h"
+#include "tests/unit/test.h"
+
+static shape_bytes bake(shape_kind kind, uint32_t size,
+                        pmesh_placement placement)
+{
+    shape_mesh *s = shape_make(kind, size, 7);
+    pmesh_encoder_config config = pmesh_encoder_config_default();
+    pmesh_encode_report report;
+    shape_bytes bytes;
+    config.position_bits = 10;
+    config.base_faces = 12;
+    config.placement = placement;
+    const pmesh_status status = shape_bake(s, &config, &bytes, &report);
+    shape_free(s);
+    CHECK(status == PMESH_OK);
+    return bytes;
+}
+
+TEST(every_flipped_bit_is_noticed)
+{
+    shape_bytes b = bake(SHAPE_SPHERE, 5, PMESH_SUBSET);
+    for (size_t bit = 0; bit < 8 * b.size; bit++) {
+        pmesh_status status;
+        b.data[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        pmesh_decoder *dec = shape_decode(b.data, b.size, b.size, &status);
+        CHECK(status != PMESH_OK);
+        pmesh_decoder_refine(dec, NULL, NULL);
+        pmesh_view v;
+        CHECK(pmesh_decoder_mesh(dec, &v) != PMESH_OK ||
+              shape_view_sound(dec));
+        pmesh_decoder_destroy(dec);
+        b.data[bit / 8] ^= (uint8_t)(1u << bit % 8);
+    }
+    free(b.data);
+}
+
+/* Makes every chunk's checksum right again, as far as framing holds. */
+static void forge_checksums(uint8_t *data, size_t size)
+{
+    size_t at = PMESH_SIGNATURE_SIZE;
+    while (at < size) {
+        pmesh_cursor in = pmesh_cursor_make(data + at, size - at);
+        pmesh_get_u8(&in);
+        const uint64_t payload = pmesh_get_varint(&in);
+        const size_t start = (size_t)(in.next - (data + at));
+        if (in.overrun || payload + PMESH_CRC_SIZE > size - at - start)
+            return;
+        const size_t body = start + (size_t)payload;
+        const uint32_t crc = pmesh_crc32c(0, data + at, body);
+        for (size_t i = 0; i < PMESH_CRC_SIZE; i++)
+            data[at + body + i] = (uint8_t)(crc >> (8 * i));
+        at += body + PMESH_CRC_SIZE;
+    }
+}
+
+static void damage_and_decode(const shape_bytes *b, uint32_t *seed)
+{
+    uint8_t *copy = malloc(b->size);
+    memcpy(copy, b->data, b->size);
+    for (uint32_t n = 1 + shape_random(seed, 3); n > 0; n--) {
+        const size_t at = PMESH_SIGNATURE_SIZE +
+                          shape_random(seed, (uint32_t)b->size - 8);
+        copy[at] = (uint8_t)shape_random(seed, 256);
+    }
+    forge_checksums(copy, b->size);
+    pmesh_status status;
+    pmesh_decoder_config config = pmesh_decoder_config_default();
+    pmesh_decoder *dec;
+    config.max_memory = (uint64_t)64 << 20;
+    CHECK(pmesh_decoder_create(&dec, &config) == PMESH_OK);
+    status = pmesh_decoder_feed(dec, copy, b->size);
+    (void)status; /* a valid stream of another mesh is a possible outcome */
+    pmesh_view v;
+    pmesh_changes changes;
+    if (pmesh_decoder_refine(dec, NULL, &changes) == PMESH_OK) {
+        CHECK(shape_view_sound(dec));
+        const pmesh_target target = { .faces = 1 };
+        pmesh_decoder_refine(dec, &target, &changes);
+        CHECK(pmesh_decoder_mesh(dec, &v) == PMESH_OK);
+        CHECK(shape_view_sound(dec));
+    }
+    pmesh_decoder_destroy(dec);
+    free(copy);
+}
+
+TEST(damage_behind_forged_checksums_does_no_harm)
+{
+    for (int kind = 0; kind < SHAPE_COUNT; kind++)
+        for (int placement = 0; placement < 2; placement++) {
+            shape_bytes b = bake((shape_kind)kind,
+                                 kind == SHAPE_SOUP ? 30 : 6,
+                                 (pmesh_placement)placement);
+            uint32_t seed = 11 + (uint32_t)kind;
+            for (int i = 0; i < 400; i++)
+                damage_and_decode(&b, &seed);
+            free(b.data);
+        }
+}
+
+TEST(bytes_behind_the_end_are_ignored)
+{
+    shape_bytes b = bake(SHAPE_TORUS, 6, PMESH_SUBSET);
+    pmesh_decoder *dec;
+    CHECK(pmesh_decoder_create(&dec, NULL) == PMESH_OK);
+    CHECK(pmesh_decoder_feed(dec, b.data, b.size) == PMESH_OK);
+    CHECK(pmesh_decoder_feed(dec, "trailing", 8) == PMESH_OK);
+    pmesh_decoder_destroy(dec);
+    free(b.data);
+}
+
+TEST(unknown_chunks_are_skipped_or_refused)
+{
+    static const uint8_t types[] = { 0x85, 0x45 };
+    for (int i = 0; i < 2; i++) {
+        shape_bytes b = bake(SHAPE_TORUS, 6, PMESH_SUBSET);
+        pmesh_cursor in = pmesh_cursor_make(b.data + 9, b.size - 9);
+        const size_t header_size = (size_t)pmesh_get_varint(&in);
+        const size_t header_end =
+            (size_t)(in.next - b.data) + header_size + PMESH_CRC_SIZE;
+        uint8_t *copy = malloc(b.size + 9);
+        const uint8_t chunk[9] = { types[i], 3, 'a', 'b', 'c' };
+        memcpy(copy, b.data, header_end);
+        memcpy(copy + header_end, chunk, sizeof chunk);
+        memcpy(copy + header_end + 9, b.data + header_end,
+               b.size - header_end);
+        forge_checksums(copy, b.size + 9);
+        pmesh_status status;
+        pmesh_decoder *dec = shape_decode(copy, b.size + 9, 64, &status);
+        CHECK(status == (i == 0 ? PMESH_OK : PMESH_E_VERSION));
+        pmesh_decoder_destroy(dec);
+        free(copy);
+        free(b.data);
+    }
+}
+
+TEST(other_files_are_refused_at_the_first_byte)
+{
+    pmesh_status status;
+    pmesh_decoder *dec =
+        shape_decode((const uint8_t *)"ply\nformat", 10, 1, &status);
+    CHECK(status == PMESH_E_MAGIC);
+    CHECK(pmesh_decoder_error(dec).status == PMESH_E_MAGIC);
+    pmesh_decoder_destroy(dec);
+}

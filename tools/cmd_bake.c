@@ -1,0 +1,335 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * cmd_bake.c - a triangle mesh into a .pmesh file.
+ */
+#include <float.h>
+#include <inttypes.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "tools/args.h"
+#include "tools/bake_report.h"
+#include "tools/cmd.h"
+#include "tools/file.h"
+#include "tools/load.h"
+#include "tools/progress.h"
+
+typedef struct options {
+    const char *input, *output;
+    int profile, placement, metric, base;
+    int format; /* which of CMD_FORMATS; -1: not given */
+    uint32_t position_bits, normal_bits, uv_bits, color_bits;
+    uint32_t base_faces, threads;
+    double weld, threshold, max_error;
+    bool no_attributes, json, quiet, verbose, progress;
+} options;
+
+#define AT(member) .offset = offsetof(options, member)
+
+static const args_option option_table[] = {
+    { .name = "output", .letter = 'o', .kind = ARGS_TEXT, .value = "OUT",
+      AT(output), .help = ".pmesh to write; \"-\" for standard output" },
+    { .name = "profile", .kind = ARGS_CHOICE,
+      .value = "compact|balanced|quality", AT(profile),
+      .help = "smallest file, best levels, or (default) balanced" },
+    { .name = "placement", .kind = ARGS_CHOICE, .value = "subset|optimal",
+      AT(placement),
+      .help = "vertices of coarse levels: vertices of the input\n"
+              "(default), or moved to where the error is least" },
+    { .name = "position-bits", .kind = ARGS_COUNT, .value = "N", .min = 4,
+      .max = 24, AT(position_bits),
+      .help = "bits per coordinate of the largest extent,\n"
+              "4 to 24; default 14" },
+    { .name = "normal-bits", .kind = ARGS_COUNT, .value = "N", .min = 4,
+      .max = 16, AT(normal_bits),
+      .help = "per component of a normal, 4 to 16; default 10" },
+    { .name = "uv-bits", .kind = ARGS_COUNT, .value = "N", .min = 4, .max = 16,
+      AT(uv_bits),
+      .help = "per texture coordinate, 4 to 16; default 12" },
+    { .name = "color-bits", .kind = ARGS_COUNT, .value = "N", .min = 4,
+      .max = 16, AT(color_bits),
+      .help = "per colour component, 4 to 16; default 8" },
+    { .name = "no-attributes", .kind = ARGS_FLAG, AT(no_attributes),
+      .help = "leave out normals, texture coordinates and colours" },
+    { .name = "base-faces", .kind = ARGS_COUNT, .value = "N", .min = 1,
+      .max = 1 << 28, AT(base_faces),
+      .help = "size of the coarsest level; default about 200" },
+    { .name = "max-error", .kind = ARGS_NUMBER, .value = "E", .min = 0,
+      .max = DBL_MAX, AT(max_error),
+      .help = "no level is further than E from the full mesh\n"
+              "(model units); default 0: no bound" },
+    { .name = "metric", .kind = ARGS_CHOICE,
+      .value = "memoryless|accumulated", AT(metric),
+      .help = "quadrics of the current surface (default) or\n"
+              "summed from the original" },
+    { .name = "weld", .kind = ARGS_NUMBER, .value = "EPS", .min = 0,
+      .max = DBL_MAX, AT(weld),
+      .help = "join positions this close (model units);\n"
+              "default 0: only equal ones" },
+    { .name = "threshold", .kind = ARGS_NUMBER, .value = "T", .min = 0,
+      .max = DBL_MAX, AT(threshold),
+      .help = "also contract unconnected vertices closer than T\n"
+              "(model units); default 0: edges only" },
+    { .name = "format", .kind = ARGS_CHOICE, .value = CMD_FORMATS, AT(format),
+      .help = "format of IN; default by its name or its bytes" },
+    { .name = "input", .letter = 'i', .kind = ARGS_TEXT, .value = "IN",
+      AT(input), .help = "the same as IN" },
+    { .name = "threads", .letter = 'j', .kind = ARGS_COUNT, .value = "N",
+      .min = 1, .max = 256, AT(threads),
+      .help = "threads to use; the file does not depend on it" },
+    { .name = "json", .kind = ARGS_FLAG, AT(json),
+      .help = "report as one JSON object on stdout" },
+    { .name = "progress", .kind = ARGS_FLAG, AT(progress),
+      .help = "show progress even if stderr is no terminal" },
+    { .name = "quiet", .letter = 'q', .kind = ARGS_FLAG, AT(quiet),
+      .help = "no report, no warnings, no progress" },
+    { .name = "verbose", .letter = 'v', .kind = ARGS_FLAG, AT(verbose),
+      .help = "report the parts of the file and its levels" },
+    { .name = "base", .kind = ARGS_CHOICE, .value = "native|draco",
+      AT(base) }, /* not listed: only one of them works yet */
+};
+
+static const args_command command = {
+    .name = "bake",
+    .summary = "Turns a triangle mesh into a progressive .pmesh file.",
+    .synopsis = "IN -o OUT.pmesh [options]",
+    .options = option_table,
+    .option_count = sizeof option_table / sizeof *option_table,
+    .details =
+        "IN is an OBJ, PLY, STL, OFF, glTF, GLB, DRC or .pmesh file, or \"-\" "
+        "for standard\ninput. Exact copies of faces, and faces with two "
+        "corners at one position, are\nleft out and counted in a warning; no "
+        "other face is lost. The same input and\noptions give the same "
+        "bytes.\n\n"
+        "  pmesh bake bunny.obj -o bunny.pmesh\n"
+        "  pmesh bake scan.ply -o scan.pmesh --position-bits 16 -j 4\n"
+        "  xz -dc part.stl.xz | pmesh bake - --format stl -o part.pmesh\n",
+};
+
+static int usage(const char *what)
+{
+    args_complain(&command, "%s", what);
+    return CMD_USAGE;
+}
+
+static int check_options(const options *o, int operand_count)
+{
+    const int inputs = operand_count + (o->input != NULL);
+
+    if (inputs != 1)
+        return usage(inputs == 0 ? "no input is named"
+                                 : "takes one input; merging is not in this "
+                                   "version");
+    if (!o->output)
+        return usage("no output is named (-o OUT.pmesh)");
+    if (o->base != 0)
+        return usage("--base draco is not in this version");
+    if (o->json && strcmp(o->output, "-") == 0)
+        return usage("--json and -o - both need standard output");
+    switch (asset_format_of(o->output)) {
+    case ASSET_UNKNOWN:
+        return CMD_DONE;
+    case ASSET_GLB:
+    case ASSET_GLTF:
+        return usage("writing into glTF is not in this version; name the "
+                     "output .pmesh");
+    default:
+        return usage("writes .pmesh files only; see pmesh extract");
+    }
+}
+
+static void configure(const options *o, pmesh_encoder_config *config)
+{
+    config->profile = (pmesh_profile)o->profile;
+    config->placement = (pmesh_placement)o->placement;
+    config->metric = (pmesh_metric)o->metric;
+    config->position_bits = (uint8_t)o->position_bits;
+    config->normal_bits = (uint8_t)o->normal_bits;
+    config->texcoord_bits = (uint8_t)o->uv_bits;
+    config->color_bits = (uint8_t)o->color_bits;
+    config->base_faces = o->base_faces;
+    config->base_error = o->max_error;
+    config->weld = o->weld;
+    config->threshold = o->threshold;
+    config->threads = o->threads;
+}
+
+static int collect(void *user, const void *data, size_t size)
+{
+    asset_bytes *bytes = user;
+    asset_put(bytes, data, size);
+    return bytes->failed;
+}
+
+static int encode_failed(const char *name, pmesh_status status,
+                         const pmesh_encode_report *report)
+{
+    switch (status) {
+    case PMESH_E_ARGUMENT:
+        report_error("bake", NULL, "the options do not go together");
+        return CMD_USAGE;
+    case PMESH_E_MEMORY:
+    case PMESH_E_WRITE: /* collect() fails for want of memory only */
+        report_error(name, NULL, "out of memory");
+        return CMD_IO;
+    case PMESH_E_INDEX:
+    case PMESH_E_NOT_FINITE: {
+        char where[48];
+        snprintf(where, sizeof where, "face %" PRIu64, report->error_index);
+        report_error(name, where, "%s", pmesh_status_text(status));
+        return CMD_ASSET;
+    }
+    case PMESH_E_LIMIT:
+        report_error(name, NULL, "more than 2^30 corners");
+        return CMD_ASSET;
+    default:
+        report_error(name, NULL, "%s", pmesh_status_text(status));
+        return status == PMESH_E_NO_FACES ? CMD_ASSET : CMD_IO;
+    }
+}
+
+/* Encodes `mesh`; its bytes go to `out`. */
+static int encode(const options *o, const char *name, const asset *mesh,
+                  bake_report *report, asset_bytes *out)
+{
+    pmesh_attribute_input attributes[PMESH_MAX_ATTRIBUTES];
+    pmesh_encoder_config config = pmesh_encoder_config_default();
+    progress bar;
+
+    for (size_t i = 0; i < mesh->attribute_count; i++) {
+        const asset_attribute *a = &mesh->attributes[i];
+        attributes[i] = (pmesh_attribute_input){
+            .kind = a->kind, .set = a->set, .components = a->components,
+            .values = a->values, .count = a->count, .indices = a->indices,
+        };
+    }
+    const pmesh_mesh_input input = {
+        .positions = mesh->positions,
+        .vertex_count = mesh->vertex_count,
+        .indices = mesh->indices,
+        .face_count = mesh->face_count,
+        .materials = mesh->materials,
+        .material_count = mesh->material_count,
+        .material_names = (const char *const *)mesh->material_names,
+        .attributes = attributes,
+        .attribute_count = o->no_attributes ? 0 : mesh->attribute_count,
+    };
+    configure(o, &config);
+    progress_begin(&bar, o->quiet      ? PROGRESS_OFF
+                         : o->progress ? PROGRESS_ON
+                                       : PROGRESS_AUTO);
+    config.progress = progress_update;
+    config.progress_user = &bar;
+    report->encode.clock = progress_clock;
+    const pmesh_status status =
+        pmesh_encode(&input, &config, collect, out, &report->encode);
+    progress_end(&bar);
+    return status == PMESH_OK ? CMD_DONE
+                              : encode_failed(name, status, &report->encode);
+}
+
+static int read_asset(const options *o, const char *path,
+                      const file_data *data, asset *mesh)
+{
+    const bool standard = strcmp(path, "-") == 0;
+    asset_error error;
+    int code = CMD_DONE;
+
+    if (o->format < 0)
+        code = load_mesh_data(data, path, mesh, &error);
+    else if (!asset_read(data->bytes, data->size,
+                         (asset_format)(ASSET_OBJ + o->format),
+                         standard ? NULL : path, mesh, &error))
+        code = CMD_ASSET;
+    if (code != CMD_DONE)
+        report_asset_error(file_input_name(path), &error);
+    return code;
+}
+
+static int bake(const options *o, const file_data *data, bake_report *report)
+{
+    asset mesh;
+    asset_error error;
+    asset_bytes bytes = { 0 };
+
+    const double start = progress_clock();
+    int code = read_asset(o, report->input, data, &mesh);
+    if (code != CMD_DONE)
+        return code;
+    report->seconds_read += progress_clock() - start;
+    report_note_lines(&report->notes, mesh.warnings);
+    code = encode(o, file_input_name(report->input), &mesh, report, &bytes);
+    asset_free(&mesh);
+    if (code == CMD_DONE) {
+        const double written = progress_clock();
+        if (!file_write(o->output, bytes.data, bytes.size, &error)) {
+            report_asset_error(file_output_name(o->output), &error);
+            code = CMD_IO;
+        }
+        report->seconds_write = progress_clock() - written;
+    }
+    asset_bytes_free(&bytes);
+    return code;
+}
+
+static void tell(const options *o, bake_report *report)
+{
+    bake_report_note_losses(report);
+    if (o->json)
+        bake_report_json(report, stdout);
+    else if (!o->quiet) /* standard output may carry the file */
+        bake_report_print(report,
+                          strcmp(o->output, "-") == 0 ? stderr : stdout,
+                          o->verbose);
+    if (!o->quiet)
+        report_notes_print(&report->notes, file_input_name(report->input));
+}
+
+int cmd_bake(int argc, char **argv)
+{
+    const pmesh_encoder_config defaults = pmesh_encoder_config_default();
+    options o = {
+        .profile = (int)defaults.profile,
+        .placement = (int)defaults.placement,
+        .metric = (int)defaults.metric,
+        .format = -1,
+        .position_bits = defaults.position_bits,
+        .normal_bits = defaults.normal_bits,
+        .uv_bits = defaults.texcoord_bits,
+        .color_bits = defaults.color_bits,
+    };
+    int count;
+    file_data data;
+    asset_error error;
+
+    const args_result parsed = args_parse(&command, argc, argv, &o, &count);
+    if (parsed != ARGS_RUN)
+        return parsed == ARGS_HELP ? CMD_DONE : CMD_USAGE;
+    int code = check_options(&o, count);
+    if (code != CMD_DONE)
+        return code;
+
+    const double start = progress_clock();
+    bake_report report = { .input = o.input ? o.input : argv[0],
+                           .output = o.output,
+                           .profile = (pmesh_profile)o.profile,
+                           .placement = (pmesh_placement)o.placement };
+    if (!file_read(report.input, FILE_LIMIT, &data, &error)) {
+        report_asset_error(file_input_name(report.input), &error);
+        return CMD_IO;
+    }
+    report.input_bytes = data.size;
+    report.seconds_read = progress_clock() - start;
+    if (file_check_output(o.output, true, &data, &error)) {
+        code = bake(&o, &data, &report);
+    } else {
+        report_asset_error(file_output_name(o.output), &error);
+        code = CMD_IO;
+    }
+    file_free(&data);
+    report.seconds_total = progress_clock() - start;
+    if (code == CMD_DONE)
+        tell(&o, &report);
+    return code;
+}

@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * cmd_info.c - what the header of a .pmesh file says.
+ */
+#include <inttypes.h>
+#include <stddef.h>
+#include <stdio.h>
+
+#include "tools/args.h"
+#include "tools/cmd.h"
+#include "tools/file.h"
+#include "tools/json.h"
+#include "tools/levels.h"
+#include "tools/report.h"
+#include "tools/stream.h"
+
+typedef struct options {
+    bool json, levels;
+} options;
+
+static const args_option option_table[] = {
+    { .name = "json", .kind = ARGS_FLAG, .offset = offsetof(options, json),
+      .help = "print one JSON object on stdout" },
+    { .name = "levels", .kind = ARGS_FLAG, .offset = offsetof(options, levels),
+      .help = "print the level table, too" },
+};
+
+static const args_command command = {
+    .name = "info",
+    .summary = "Prints what the header of a .pmesh file says; the file may be "
+               "cut off.",
+    .synopsis = "FILE [options]",
+    .options = option_table,
+    .option_count = sizeof option_table / sizeof *option_table,
+    .details =
+        "\"-\" is standard input. Nothing behind the header is checked: see "
+        "pmesh verify.\nThe JSON object always holds the level table.\n\n"
+        "  pmesh info bunny.pmesh --levels\n"
+        "  head -c 10k bunny.pmesh | pmesh info -\n",
+};
+
+static const char *kind_name(pmesh_attribute_kind kind)
+{
+    switch (kind) {
+    case PMESH_NORMAL: return "normal";
+    case PMESH_TEXCOORD: return "texcoord";
+    case PMESH_COLOR: return "color";
+    case PMESH_GENERIC: return "generic";
+    }
+    return "unknown";
+}
+
+static void print_attributes(const pmesh_header *h)
+{
+    printf("attributes   ");
+    if (h->attribute_count == 0)
+        printf("none");
+    for (uint32_t i = 0; i < h->attribute_count; i++) {
+        const pmesh_attribute *a = &h->attributes[i];
+        printf("%s%s", i > 0 ? ", " : "", kind_name(a->kind));
+        if (a->kind != PMESH_NORMAL)
+            printf(" %u", a->set);
+        printf(" (%u bits)", a->bits);
+    }
+    putchar('\n');
+}
+
+static void print_materials(const stream *s)
+{
+    printf("materials    %" PRIu32, s->header.material_count);
+    for (uint32_t i = 0; i < s->header.material_count; i++) {
+        const char *name = pmesh_decoder_material_name(s->decoder, i);
+        if (*name) {
+            printf(i > 0 ? ", " : ": ");
+            report_put(stdout, name);
+        }
+    }
+    putchar('\n');
+}
+
+static void print_text(const char *path, const stream *s, uint64_t size,
+                       bool levels)
+{
+    const pmesh_header *h = &s->header;
+
+    printf("file         ");
+    report_put(stdout, file_input_name(path));
+    printf("\nformat       %" PRIu32 ", content %016" PRIx64 "\n",
+           h->format_version, h->content_hash);
+    printf("bytes        %" PRIu64, h->bytes);
+    if (size < h->bytes)
+        printf(", cut off after %" PRIu64 ": %" PRIu32 " of %" PRIu32
+               " levels", size,
+               levels_within(h->levels, h->level_count, size), h->level_count);
+    printf("\nfull detail  %" PRIu32 " faces, %" PRIu32 " vertices, %" PRIu32
+           " output vertices\n",
+           h->faces, h->mesh_vertices, h->vertices);
+    printf("base mesh    %" PRIu32 " faces, %" PRIu32 " vertices\n",
+           h->base_faces, h->base_mesh_vertices);
+    printf("levels       %" PRIu32 ", %s profile, %s placement\n",
+           h->level_count, levels_profile_name(h->profile),
+           levels_placement_name(h->placement));
+    printf("positions    %u bits, step %.6g\n", h->grid.bits, h->grid.step);
+    print_attributes(h);
+    print_materials(s);
+    if (levels) {
+        putchar('\n');
+        levels_print(stdout, h->levels, h->level_count);
+    }
+}
+
+static void json_grid(json *j, const pmesh_header *h)
+{
+    json_open_flat(j, "origin", '[');
+    for (int i = 0; i < 3; i++)
+        json_number(j, NULL, h->grid.origin[i]);
+    json_close(j);
+    json_number(j, "step", h->grid.step);
+    json_open_flat(j, "size", '[');
+    for (int i = 0; i < 3; i++)
+        json_number(j, NULL, h->grid.step * h->bounds[i]);
+    json_close(j);
+}
+
+static void json_lists(json *j, const stream *s)
+{
+    const pmesh_header *h = &s->header;
+
+    json_open(j, "attributes", '[');
+    for (uint32_t i = 0; i < h->attribute_count; i++) {
+        json_open_flat(j, NULL, '{');
+        json_text(j, "kind", kind_name(h->attributes[i].kind));
+        json_count(j, "set", h->attributes[i].set);
+        json_count(j, "components", h->attributes[i].components);
+        json_count(j, "bits", h->attributes[i].bits);
+        json_close(j);
+    }
+    json_close(j);
+    json_open(j, "materials", '[');
+    for (uint32_t i = 0; i < h->material_count; i++)
+        json_text(j, NULL, pmesh_decoder_material_name(s->decoder, i));
+    json_close(j);
+    levels_json(j, h->levels, h->level_count);
+}
+
+static void print_json(const char *path, const stream *s, uint64_t size)
+{
+    const pmesh_header *h = &s->header;
+    char hash[20];
+    json j;
+
+    snprintf(hash, sizeof hash, "%016" PRIx64, h->content_hash);
+    json_begin(&j, stdout);
+    json_text(&j, "schema", "pmesh-info-1");
+    json_text(&j, "tool", "pmesh");
+    json_text(&j, "version", pmesh_version());
+    json_text(&j, "input", path);
+    json_count(&j, "format_version", h->format_version);
+    json_text(&j, "content_hash", hash);
+    json_count(&j, "bytes", h->bytes);
+    json_count(&j, "bytes_present", size);
+    json_bool(&j, "complete", size >= h->bytes);
+    json_count(&j, "levels_present",
+               levels_within(h->levels, h->level_count, size));
+    json_count(&j, "meshes", 1);
+    json_count(&j, "faces", h->faces);
+    json_count(&j, "vertices", h->mesh_vertices);
+    json_count(&j, "output_vertices", h->vertices);
+    json_count(&j, "base_faces", h->base_faces);
+    json_count(&j, "base_vertices", h->base_mesh_vertices);
+    json_count(&j, "base_output_vertices", h->base_vertices);
+    json_text(&j, "profile", levels_profile_name(h->profile));
+    json_text(&j, "placement", levels_placement_name(h->placement));
+    json_count(&j, "position_bits", h->grid.bits);
+    json_grid(&j, h);
+    json_count(&j, "decoder_memory", h->memory);
+    json_lists(&j, s);
+    json_end(&j);
+}
+
+int cmd_info(int argc, char **argv)
+{
+    options o = { 0 };
+    int count;
+    file_data data;
+    asset_error error;
+    stream s;
+
+    const args_result parsed = args_parse(&command, argc, argv, &o, &count);
+    if (parsed != ARGS_RUN)
+        return parsed == ARGS_HELP ? CMD_DONE : CMD_USAGE;
+    if (count != 1) {
+        args_complain(&command, count == 0 ? "no file is named"
+                                           : "takes one file");
+        return CMD_USAGE;
+    }
+    const char *path = argv[0];
+    if (!file_read(path, FILE_LIMIT, &data, &error)) {
+        report_asset_error(file_input_name(path), &error);
+        return CMD_IO;
+    }
+    const int code = stream_open_header(&data, &s, &error);
+    if (code != CMD_DONE)
+        report_asset_error(file_input_name(path), &error);
+    else if (o.json)
+        print_json(path, &s, data.size);
+    else
+        print_text(path, &s, data.size, o.levels);
+    stream_close(&s);
+    file_free(&data);
+    return code;
+}

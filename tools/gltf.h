@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * gltf.h - the parts of the glTF reader, in the order they run:
+ *
+ *   gltf_container.c  bytes -> JSON text and BIN chunk
+ *   gltf_plain.cpp    JSON -> a plain document: only what geometry needs, every
+ *                     number checked, compressed data expanded
+ *                     (gltf_uri.c: buffers; gltf_inflate.cpp: compression)
+ *   io_gltf.cpp       plain document -> gltf_model, by tinygltf
+ *   gltf_accessor.c   accessors -> numbers
+ *   gltf_scene.c      node tree -> instances with world matrices
+ *   gltf_survey.c     instances -> counts, channels, materials
+ *   gltf_merge.c      instances -> one mesh
+ *
+ * Private to these files. Everything here may meet hostile input.
+ */
+#ifndef GLTF_H
+#define GLTF_H
+
+#include "tools/asset.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define GLTF_NONE UINT32_MAX
+#define GLTF_MAX_DEPTH 64 /* of nested JSON values */
+#define GLTF_MAX_FACES ((uint64_t)1 << 27)
+
+/* Slots of a primitive: NORMAL, TEXCOORD_0..7, COLOR_0..7. */
+#define GLTF_SETS 8
+#define GLTF_NORMAL 0
+#define GLTF_TEXCOORD 1
+#define GLTF_COLOR (GLTF_TEXCOORD + GLTF_SETS)
+#define GLTF_SLOTS (GLTF_COLOR + GLTF_SETS)
+
+/* The slot of a semantic such as "TEXCOORD_1", or -1. */
+int gltf_slot(const char *semantic);
+
+/* The file's bytes and where they came from. */
+typedef struct gltf_source {
+    const char *json;
+    size_t json_size;
+    const uint8_t *bin; /* GLB's BIN chunk, or NULL */
+    size_t bin_size;
+    size_t file_size;
+    const char *path; /* or NULL: no side files */
+} gltf_source;
+
+/* Finds the JSON text; `warnings` takes what is odd but harmless. Nesting
+ * beyond GLTF_MAX_DEPTH fails, so later stages may recurse over values. */
+bool gltf_open(const uint8_t *data, size_t size, gltf_source *out,
+               asset *warnings, asset_error *error);
+
+/*
+ * How many bytes a buffer's URI offers, and the first `size` of them. Only
+ * base64 data URIs and relative paths that stay below the asset's folder are
+ * read; the file must be a regular one.
+ */
+bool gltf_uri_size(const gltf_source *source, const char *uri, size_t length,
+                   uint64_t *size, asset_error *error);
+bool gltf_uri_read(const gltf_source *source, const char *uri, size_t length,
+                   uint8_t *dst, uint64_t size, asset_error *error);
+
+/*
+ * Bytes that one file may still expand to: compressed views, sparse accessors,
+ * elements without data. Starts at 64 MiB and 256 times the file's size, so
+ * that a small file that lies cannot take much memory.
+ */
+typedef struct gltf_budget {
+    uint64_t left;
+} gltf_budget;
+
+gltf_budget gltf_budget_for(uint64_t file_size);
+
+/* Takes count * size bytes; false (and nothing taken) if they are not left. */
+bool gltf_spend(gltf_budget *budget, uint64_t count, uint64_t size);
+
+enum {
+    GLTF_I8 = 5120,
+    GLTF_U8 = 5121,
+    GLTF_I16 = 5122,
+    GLTF_U16 = 5123,
+    GLTF_U32 = 5125,
+    GLTF_F32 = 5126
+};
+
+typedef struct gltf_view {
+    const uint8_t *data; /* NULL: no view */
+    uint64_t size;
+} gltf_view;
+
+typedef struct gltf_accessor {
+    uint32_t number; /* in the file, for messages */
+    gltf_view view; /* from the accessor's first byte to the view's end */
+    uint64_t count;
+    uint32_t stride;
+    uint32_t type; /* GLTF_F32, ... */
+    uint8_t components;
+    bool normalised;
+    uint64_t sparse_count; /* 0: dense */
+    uint32_t sparse_type;  /* of the indices */
+    gltf_view sparse_indices, sparse_values;
+    uint8_t *expanded; /* owned: what `view` shows after expansion, or NULL */
+} gltf_accessor;
+
+typedef struct gltf_primitive {
+    uint32_t mode; /* 4 triangles, 5 strip, 6 fan */
+    uint32_t position, indices, material;
+    uint32_t slots[GLTF_SLOTS]; /* accessors, or GLTF_NONE */
+} gltf_primitive;
+
+typedef struct gltf_mesh {
+    size_t first, count; /* of primitives */
+} gltf_mesh;
+
+typedef struct gltf_node {
+    uint32_t mesh;
+    size_t first, count; /* of children */
+    bool has_matrix;
+    double matrix[16]; /* column by column */
+    double translation[3], rotation[4], scale[3];
+} gltf_node;
+
+/* References are in range; what they mean is checked by the C stages. */
+typedef struct gltf_model {
+    gltf_accessor *accessors;
+    gltf_primitive *primitives;
+    gltf_mesh *meshes;
+    gltf_node *nodes;
+    uint32_t *children, *roots;
+    const char **materials; /* names; empty: unnamed */
+    size_t accessor_count, primitive_count, mesh_count, node_count;
+    size_t root_count, material_count;
+    uint64_t byte_count; /* of the file and the buffers beside it */
+    void *owner;         /* the bridge's: holds the arrays and the buffers */
+} gltf_model;
+
+/* The bridge: parse, check, expand, load. On failure nothing is to be freed. */
+bool gltf_load(const gltf_source *source, gltf_budget *budget, gltf_model *out,
+               asset *warnings, asset_error *error);
+void gltf_unload(gltf_model *model);
+
+/* Checks one accessor against its views and applies its sparse part; from then
+ * on gltf_get() and gltf_index() are safe for every element. */
+bool gltf_accessor_prepare(gltf_accessor *accessor, gltf_budget *budget,
+                           asset_error *error);
+
+/* Element `i` as real numbers, `components` of them. */
+void gltf_get(const gltf_accessor *accessor, uint64_t i, double out[4]);
+
+/* Element `i` of a prepared scalar accessor of unsigned integers. */
+uint32_t gltf_index(const gltf_accessor *accessor, uint64_t i);
+
+/* A mesh in the world: x' = m[0] x + m[1] y + m[2] z + m[3], and so on. */
+typedef struct gltf_instance {
+    double m[12];
+    uint32_t mesh;
+} gltf_instance;
+
+/* Walks the scene; `*out` is malloc'ed, in document order. */
+bool gltf_scene_walk(const gltf_model *model, gltf_instance **out,
+                     size_t *count, asset_error *error);
+
+/* What the scene comes to. */
+typedef struct gltf_plan {
+    uint64_t faces;
+    uint64_t vertex_bound; /* vertices at most */
+    uint64_t largest;      /* vertex count of a primitive */
+    uint8_t channel_slots[PMESH_MAX_ATTRIBUTES]; /* by asset attribute */
+    uint32_t *materials; /* new index by old one, the last for "none" */
+} gltf_plan;
+
+/* Counts, checks, and gives *out its attributes (without values) and material
+ * names; plan->materials is the caller's to free, on failure too. */
+bool gltf_survey(const gltf_model *model, const gltf_instance *instances,
+                 size_t count, gltf_plan *plan, asset *out,
+                 asset_error *error);
+
+/* The accessor of a slot, or NULL if there is none that fits its meaning. */
+const gltf_accessor *gltf_slot_accessor(const gltf_model *model,
+                                        const gltf_primitive *p,
+                                        unsigned slot);
+
+/* Fills the empty asset from prepared accessors. */
+bool gltf_merge(const gltf_model *model, const gltf_instance *instances,
+                size_t instance_count, asset *out, asset_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

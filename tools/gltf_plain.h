@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * gltf_plain.h - the C++ side of the glTF bridge: a document with nothing in
+ * it that tinygltf could stumble over. Functions throw std::runtime_error.
+ */
+#ifndef GLTF_PLAIN_H
+#define GLTF_PLAIN_H
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/gltf.h"
+
+using gltf_json = nlohmann::json;
+using gltf_bytes = std::vector<uint8_t>;
+
+struct gltf_plain {
+    std::string text;               /* JSON; buffer n has the URI "n" */
+    std::vector<gltf_bytes> blobs;  /* what the buffers hold */
+    uint64_t byte_count = 0;        /* of the file and what lies beside it */
+};
+
+/* Reads the source's JSON and keeps what triangles and their attributes need:
+ * accessors, views and buffers in use, expanded; nodes; material names. */
+gltf_plain gltf_make_plain(const gltf_source &source, gltf_budget &budget,
+                           asset *warnings);
+
+/* An element of one of the document's lists, with its name for messages. */
+struct gltf_item {
+    const gltf_json &value;
+    const char *list;
+    size_t number;
+
+    [[noreturn]] void fail(const std::string &what) const;
+
+    /* A member that is a whole number from 0 to 2^53, or `fallback`. */
+    uint64_t whole(const char *member, uint64_t fallback) const;
+    uint64_t whole(const char *member) const; /* must be there */
+
+    /* A member that numbers an element of a list of `limit`, or GLTF_NONE. */
+    uint32_t id(const char *member, size_t limit) const;
+
+    /* A member that is an object, or nullptr. */
+    const gltf_json *object(const char *member) const;
+
+    /* One of its extensions, or nullptr. */
+    const gltf_json *extension(const char *name) const;
+};
+
+/* `value`, which is the item's `member`, as an element's number. */
+uint32_t gltf_to_id(const gltf_item &item, const char *member,
+                    const gltf_json &value, size_t limit);
+
+/* gltf_inflate.cpp */
+
+/* The bytes of a view compressed by EXT_meshopt_compression; `source` is what
+ * its byteOffset and byteLength cut out of the buffer. */
+gltf_bytes gltf_inflate(const gltf_item &extension, const uint8_t *source,
+                        size_t size, gltf_budget &budget);
+
+/* A primitive's decoded KHR_draco_mesh_compression data. */
+struct gltf_draco {
+    struct attribute {
+        std::string semantic;
+        unsigned components;
+        gltf_bytes values; /* float32, little-endian, one tuple per point */
+    };
+    size_t points, faces;
+    gltf_bytes indices; /* u32 little-endian */
+    std::vector<attribute> attributes;
+};
+
+/* `ids` is the extension's attribute map. An attribute whose accessor is
+ * normalised is divided by what its integers call 1. */
+gltf_draco gltf_inflate_draco(const gltf_item &primitive, const gltf_json &ids,
+                              const std::vector<std::string> &normalised,
+                              const uint8_t *source, size_t size,
+                              gltf_budget &budget);
+
+#endif

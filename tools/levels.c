@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+#include "tools/levels.h"
+
+uint32_t levels_within(const pmesh_level *levels, uint32_t count,
+                       uint64_t bytes)
+{
+    uint32_t n = 0;
+    while (n < count && levels[n].bytes <= bytes)
+        n++;
+    return n;
+}
+
+void levels_print(FILE *out, const pmesh_level *levels, uint32_t count)
+{
+    fprintf(out, "level       bytes       faces    vertices       error\n");
+    for (uint32_t i = 0; i < count; i++)
+        fprintf(out, "%5lu %11llu %11lu %11lu %11.4g\n", (unsigned long)i,
+                (unsigned long long)levels[i].bytes,
+                (unsigned long)levels[i].faces,
+                (unsigned long)levels[i].mesh_vertices,
+                (double)levels[i].error);
+}
+
+void levels_json(json *j, const pmesh_level *levels, uint32_t count)
+{
+    json_open(j, "levels", '[');
+    for (uint32_t i = 0; i < count; i++) {
+        json_open_flat(j, NULL, '{');
+        json_count(j, "bytes", levels[i].bytes);
+        json_count(j, "faces", levels[i].faces);
+        json_count(j, "vertices", levels[i].mesh_vertices);
+        json_count(j, "output_vertices", levels[i].vertices);
+        json_float(j, "error", levels[i].error);
+        json_close(j);
+    }
+    json_close(j);
+}
+
+const char *levels_profile_name(pmesh_profile profile)
+{
+    switch (profile) {
+    case PMESH_COMPACT: return "compact";
+    case PMESH_BALANCED: return "balanced";
+    case PMESH_QUALITY: return "quality";
+    }
+    return "unknown";
+}
+
+const char *levels_placement_name(pmesh_placement placement)
+{
+    switch (placement) {
+    case PMESH_SUBSET: return "subset";
+    case PMESH_OPTIMAL: return "optimal";
+    }
+    return "unknown";
+}
