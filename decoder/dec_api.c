@@ -251,8 +251,8 @@ const char *pmesh_decoder_material_name(const pmesh_decoder *dec,
         return "";
     const char *name = dec->names;
     const char *end = dec->names + dec->header.names_size;
-    for (; material > 0 && name < end; material--)
-        name += strlen(name) + 1;
+    for (; material > 0 && name < end; name++) /* a 0 stands at `end` too */
+        material -= *name == 0;
     return name < end ? name : "";
 }
 
