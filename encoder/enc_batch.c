@@ -27,9 +27,9 @@ enum {
 /* An entry whose cost has grown by more than this goes back to the queue. */
 #define STALE_FACTOR 1.1
 
-/* Unclean pairs are for meshes that leave no other choice: where clean ones
- * fill this share of a batch, it ends with them. */
-#define CLEAN_SHARE 0.25
+/* Unclean pairs are for meshes that leave no other choice: they come last, and
+ * a batch that is full to this share takes none. */
+#define CLEAN_SHARE 0.5
 
 enum { PROGRESS_INTERVAL = 1 << 16 };
 

@@ -64,7 +64,6 @@ typedef struct job {
     enc_replay replay;
     enc_stream stream;
     pmesh_header_chunk header;
-    float *drift; /* per vertex: bound on its distance from the original */
     uint8_t *room;
     size_t room_size;
 } job;
@@ -82,41 +81,21 @@ static bool cancelled(const job *j, const char *stage, double done)
 
 /* ---- the level table --------------------------------------------------- */
 
-/* The error of the mesh that contractions 0 .. end - 1 leave, in grid steps: a
- * vertex stands for its children, whose errors add up along the tree. */
-static float advance_error(job *j, uint32_t first, uint32_t end, float error)
-{
-    for (uint32_t t = first; t < end; t++) {
-        const enc_contraction *c = &j->schedule.contraction[t];
-        float *parent = &j->drift[c->parent];
-        const float child = j->drift[c->child];
-        *parent = (child > *parent ? child : *parent) + c->error;
-        if (*parent > error)
-            error = *parent;
-    }
-    return error;
-}
-
 /* Level k is the mesh after all batches but the last k; filled from the
- * finest, whose error is 0, to the base. */
-static bool fill_errors(job *j)
+ * finest, whose error is 0, to the base. A level is as far from the original as
+ * the worst contraction that led to it. */
+static void fill_errors(job *j)
 {
     const enc_schedule *s = &j->schedule;
-    const size_t n = j->mesh.vertex_count;
     float error = 0;
-    j->drift = pmesh_alloc_zero(&j->config.allocator, n, sizeof *j->drift);
-    if (!j->drift)
-        return false;
     j->header.levels[s->batch_count].error = 0;
     for (uint32_t b = 0; b < s->batch_count; b++) {
-        error = advance_error(j, s->batch_first[b], s->batch_first[b + 1],
-                              error);
+        for (uint32_t t = s->batch_first[b]; t < s->batch_first[b + 1]; t++)
+            if (s->contraction[t].error > error)
+                error = s->contraction[t].error;
         j->header.levels[s->batch_count - b - 1].error =
             (float)((double)error * j->mesh.grid.step);
     }
-    pmesh_release(&j->config.allocator, j->drift, n, sizeof *j->drift);
-    j->drift = NULL;
-    return true;
 }
 
 static void finish_level(job *j, uint32_t level)
@@ -320,8 +299,9 @@ static pmesh_status code(job *j, const pmesh_mesh_input *in)
                           j->config.placement == PMESH_OPTIMAL);
     if (status != PMESH_OK)
         return status;
-    if (!make_room(j) || !fill_errors(j))
+    if (!make_room(j))
         return PMESH_E_MEMORY;
+    fill_errors(j);
     write_names(j, in);
     status = write_base(j);
     return status == PMESH_OK ? write_levels(j) : status;
@@ -376,8 +356,6 @@ pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
     enc_stream_init(&j.stream, j.config.allocator);
     const pmesh_status status = run(&j, mesh, write, user);
 
-    pmesh_release(&j.config.allocator, j.drift, j.mesh.vertex_count,
-                  sizeof *j.drift);
     pmesh_release(&j.config.allocator, j.room, j.room_size, 1);
     enc_stream_destroy(&j.stream);
     enc_replay_destroy(&j.replay);
