@@ -82,6 +82,16 @@ static bool read_element(ply_header *h, text_cursor *in, asset_error *error)
     return true;
 }
 
+/* Of two properties with one meaning the first counts. */
+static ply_slot unless_taken(const ply_header *h, const ply_element *e,
+                             ply_slot slot)
+{
+    for (size_t i = e->first; i < h->property_count; i++)
+        if (h->properties[i].slot == slot)
+            return SLOT_NONE;
+    return slot;
+}
+
 static bool read_property(ply_header *h, text_cursor *in, asset_error *error)
 {
     if (!h->element_count)
@@ -99,7 +109,7 @@ static bool read_property(ply_header *h, text_cursor *in, asset_error *error)
         return asset_fail(error, TEXT_AT(in), "unknown property type");
     const text_word name = text_next_word(in);
     if (e->role == ROLE_VERTICES && !list)
-        p.slot = vertex_slot(name);
+        p.slot = unless_taken(h, e, vertex_slot(name));
     else if (e->role != ROLE_VERTICES && e->role != ROLE_NONE && list &&
              (text_equal(name, "vertex_indices") ||
               text_equal(name, "vertex_index")))

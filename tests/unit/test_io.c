@@ -451,6 +451,20 @@ TEST(ply_reads_big_endian_behind_a_dos_header)
         CHECK(!read_bytes(ASSET_PLY, all, size - cut, &mesh));
 }
 
+TEST(ply_takes_the_first_of_two_properties_of_one_name)
+{
+    asset mesh;
+    CHECK(read_text(ASSET_PLY,
+                    "ply\nformat ascii 1.0\nelement vertex 3\n"
+                    "property float x\nproperty float y\nproperty float z\n"
+                    "property float x\nelement face 1\n"
+                    "property list uchar int vertex_indices\nend_header\n"
+                    "0 0 0 7\n1 0 0 7\n0 1 0 7\n3 0 1 2\n",
+                    &mesh));
+    CHECK(mesh.positions[0] == 0 && mesh.positions[3] == 1);
+    asset_free(&mesh);
+}
+
 TEST(ply_unrolls_triangle_strips)
 {
     asset mesh;
