@@ -424,7 +424,7 @@ TEST(import_counts_repeated_and_degenerate_faces)
 
 TEST(import_drops_faces_that_are_not_finite)
 {
-    double xyz[8 * 3];
+    double xyz[8 * 3] = { 0 };
     trial t = trial_of(xyz, 8, cube_faces, 12);
 
     memcpy(xyz, cube_corners, sizeof xyz);
@@ -440,7 +440,7 @@ TEST(import_drops_faces_that_are_not_finite)
 
 TEST(import_names_the_face_with_a_bad_index)
 {
-    uint32_t faces[36];
+    uint32_t faces[36] = { 0 };
     trial t = trial_of(cube_corners, 8, faces, 12);
 
     memcpy(faces, cube_faces, sizeof faces);
@@ -499,7 +499,7 @@ TEST(import_rejects_illegal_arguments)
 TEST(import_takes_any_extent)
 {
     static const double scales[] = { 1e-320, 1e-300, 1e300, 1e308 };
-    double xyz[8 * 3];
+    double xyz[8 * 3] = { 0 };
     trial t = trial_of(xyz, 8, cube_faces, 12);
 
     for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
