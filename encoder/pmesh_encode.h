@@ -83,8 +83,8 @@ typedef struct pmesh_encoder_config {
     uint8_t generic_bits;      /* 4 .. 16, default 12 */
     double weld;               /* join positions this close, model units; 0:
                                   only equal ones */
-    double threshold;          /* also contract unconnected vertices closer than
-                                  this (model units); 0 (default): edges only */
+    double threshold;          /* reserved for pairs without an edge, which
+                                  format 0 cannot code: has no effect */
     uint32_t base_faces;       /* stop at this many faces; 0: about 200 */
     uint32_t base_vertices;    /* ... or this many vertices; 0: no such stop */
     double base_ratio;         /* ... or this share of the faces; 0: no stop */

@@ -70,7 +70,7 @@ static const args_option option_table[] = {
     { .name = "threshold", .kind = ARGS_NUMBER, .value = "T", .min = 0,
       .max = DBL_MAX, AT(threshold),
       .help = "also contract unconnected vertices closer than T\n"
-              "(model units); default 0: edges only" },
+              "(no effect yet: format 0 cannot code it)" },
     { .name = "format", .kind = ARGS_CHOICE, .value = CMD_FORMATS, AT(format),
       .help = "format of IN; default by its name or its bytes" },
     { .name = "input", .letter = 'i', .kind = ARGS_TEXT, .value = "IN",
@@ -259,6 +259,9 @@ static int bake(const options *o, const file_data *data, bake_report *report)
         return code;
     report->seconds_read += progress_clock() - start;
     report_note_lines(&report->notes, mesh.warnings);
+    if (o->threshold > 0)
+        report_note(&report->notes, "--threshold has no effect yet: format 0 "
+                                    "codes contractions along edges only");
     code = encode(o, file_input_name(report->input), &mesh, report, &bytes);
     asset_free(&mesh);
     if (code == CMD_DONE) {
