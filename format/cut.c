@@ -1,13 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 #include "format/cut.h"
 
-#include "format/tables.h"
-
 enum {
     MAX_CUTS = PMESH_MAX_RING * (PMESH_MAX_RING - 1),
+    GHOST = 255,     /* as a wing */
     SHAPE_BITS = 12, /* coordinates are scaled to this magnitude */
+    TERMS = 5,
+    WEIGHT_ONE = 256, /* weights have 1/4096 bit, costs 1/16 bit */
+    SHARE_ONE = 4096,
+    LEAST_ERROR = 16,   /* of a share: less is not worth learning */
+    LEARN_PLACE = 8,    /* error / this changes a weight of a place, */
+    LEARN_SHAPE = 1024, /* error x term / this one of the shape */
+    LARGEST_WEIGHT = 1 << 24,
     TAKEN = INT32_MAX
 };
+
+/* Terms have 1/256 of the ring's size: x 2^40 / size / 2^32. */
+#define SIZE_ONE ((int64_t)1 << 40)
+#define TERM_ONE ((int64_t)1 << 32)
 
 /* The ring in coordinates relative to v and scaled so that the largest lies in
  * 2^12 .. 2^13: then every sum below stays under 2^46 (SPEC appendix A). */
@@ -18,10 +28,12 @@ typedef struct shape {
     int64_t sum[2 * PMESH_MAX_RING + 1][3]; /* of the first members, twice
                                                round if closed */
     int64_t square[2 * PMESH_MAX_RING + 1];
-    int64_t size;        /* mean square distance of the ring from v */
+    int64_t per_size;    /* SIZE_ONE / mean square distance from v */
     int64_t drift[3];    /* mean displacement of newborn members ... */
     int32_t drift_count; /* ... if there are any */
-    int32_t topology[2][PMESH_MAX_RING]; /* cost of a member as wing a, b */
+    pmesh_cut_weights *weights;
+    int32_t *degree[PMESH_MAX_RING];   /* weights of a member as a wing: its */
+    int32_t *state[2][PMESH_MAX_RING]; /* degree, the states around wing a, b */
 } shape;
 
 static int64_t dot(const int64_t a[3], const int64_t b[3])
@@ -89,9 +101,8 @@ static void shape_sums(shape *s)
         }
         s->square[i + 1] = s->square[i] + square;
     }
-    s->size = s->square[n] / n;
-    if (s->size == 0)
-        s->size = 1;
+    const int64_t size = s->square[n] / n;
+    s->per_size = SIZE_ONE / (size ? size : 1);
 }
 
 /* What the states of three consecutive members and the degree of the middle
@@ -100,6 +111,7 @@ static void shape_sums(shape *s)
 static void shape_topology(shape *s, const pmesh_codec *c,
                            const pmesh_ring *ring)
 {
+    pmesh_cut_weights *w = s->weights;
     const uint32_t n = ring->count;
     uint8_t state[PMESH_MAX_RING + 2];
     for (uint32_t i = 0; i < n; i++)
@@ -108,67 +120,104 @@ static void shape_topology(shape *s, const pmesh_codec *c,
     state[n + 1] = ring->open ? PMESH_GHOST : state[1];
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t degree = c->degree[ring->vertex[i]];
-        const int32_t common =
-            pmesh_cut_degree[degree < PMESH_CUT_DEGREES
-                                 ? degree : PMESH_CUT_DEGREES - 1];
-        s->topology[0][i] =
-            common + pmesh_cut_state[state[i]][state[i + 1]][state[i + 2]];
-        s->topology[1][i] =
-            common + pmesh_cut_state[state[i + 2]][state[i + 1]][state[i]];
+        s->degree[i] = &w->degree[degree < PMESH_CUT_DEGREES
+                                      ? degree
+                                      : PMESH_CUT_DEGREES - 1];
+        s->state[0][i] = &w->state[state[i]][state[i + 1]][state[i + 2]];
+        s->state[1][i] = &w->state[state[i + 2]][state[i + 1]][state[i]];
     }
 }
 
-/* Cost in 1/16 bit, up to a constant, of giving u the members first .. first +
- * span (wings included); `a` and `b` are the wings or PMESH_NONE. */
-static int32_t cut_cost(const shape *s, uint32_t first, uint32_t span,
-                        uint32_t a, uint32_t b)
+/* One way to cut, by ring positions. */
+typedef struct option {
+    uint8_t a, b; /* wings: the first and the last member that u gets */
+} option;
+
+/* Both ends of what u gets; a ghost stands beyond either end. */
+static uint32_t option_span(const shape *s, option o, uint32_t *first)
 {
-    const uint32_t n = s->count, last = first + span;
+    const uint32_t last = o.b == GHOST ? s->count - 1 : o.b;
+    *first = o.a == GHOST ? 0 : o.a;
+    return *first <= last ? last - *first : s->count - *first + last;
+}
+
+static int32_t *shape_weights(const shape *s, option o)
+{
+    const int kind = o.a == GHOST || o.b == GHOST ? 2 : s->open ? 1 : 0;
+    return s->weights->shape[kind][s->drift_count ? 1 : 0];
+}
+
+/* Spread of u's ring, off-centre of v, reach of the wings, their angle, and
+ * how far u strays from its newborn neighbours' displacement. */
+static void weigh_shape(const shape *s, option o, int32_t term[TERMS])
+{
+    uint32_t first;
+    const uint32_t n = s->count, span = option_span(s, o, &first);
     const int64_t members = span + 2; /* and v itself, which is at 0 */
-    int64_t mean[3], rest[3], part[3], wings[2][3] = { { 0 } };
-    int64_t off = 0, stray = 0, reach = 0;
     const int64_t others =
-        n - span + (a != PMESH_NONE) + (b != PMESH_NONE); /* v's ring after */
+        n - span + (o.a != GHOST) + (o.b != GHOST); /* v's ring after */
+    int64_t mean[3], a[3] = { 0 }, b[3] = { 0 };
+    int64_t off = 0, stray = 0;
 
     for (int k = 0; k < 3; k++) {
-        part[k] = s->sum[last + 1][k] - s->sum[first][k];
-        mean[k] = part[k] / members;
-        if (a != PMESH_NONE)
-            wings[0][k] = s->x[a][k];
-        if (b != PMESH_NONE)
-            wings[1][k] = s->x[b][k];
-        rest[k] = (s->sum[n][k] - part[k] + wings[0][k] + wings[1][k] +
-                   mean[k]) / others;
-        off += rest[k] * rest[k];
+        const int64_t part = s->sum[first + span + 1][k] - s->sum[first][k];
+        mean[k] = part / members;
+        if (o.a != GHOST)
+            a[k] = s->x[o.a][k];
+        if (o.b != GHOST)
+            b[k] = s->x[o.b][k];
+        const int64_t rest =
+            (s->sum[n][k] - part + a[k] + b[k] + mean[k]) / others;
+        off += rest * rest;
         stray += (mean[k] - s->drift[k]) * (mean[k] - s->drift[k]);
-        reach += wings[0][k] * wings[0][k] + wings[1][k] * wings[1][k];
     }
     const int64_t spread =
-        (s->square[last + 1] - s->square[first]) / members - dot(mean, mean);
+        (s->square[first + span + 1] - s->square[first]) / members -
+        dot(mean, mean);
+    const int64_t terms[TERMS] = { spread, off, dot(a, a) + dot(b, b),
+                                   dot(a, b), s->drift_count ? stray : 0 };
+    for (int t = 0; t < TERMS; t++)
+        term[t] = (int32_t)(terms[t] * s->per_size / TERM_ONE);
+}
 
-    const bool ghost = a == PMESH_NONE || b == PMESH_NONE;
-    const int16_t *w =
-        pmesh_cut_shape[ghost ? 2 : s->open ? 1 : 0]
-                       [s->drift_count ? 1 : 0];
-    int64_t cost = w[0] * spread + w[1] * off + w[2] * reach +
-                   w[3] * dot(wings[0], wings[1]);
-    if (s->drift_count)
-        cost += w[4] * stray;
-    cost /= s->size;
+/* The weights of places: of the span, then two for each wing. */
+static uint32_t list_places(const shape *s, option o, int32_t *place[5])
+{
+    uint32_t first, count = 0;
+    const uint32_t span = option_span(s, o, &first);
+    const uint32_t n = s->count;
+    place[count++] =
+        &s->weights->span[o.a == GHOST || o.b == GHOST ? 1 : 0]
+                         [n < PMESH_CUT_RINGS ? n : PMESH_CUT_RINGS - 1]
+                         [span < PMESH_CUT_SPANS ? span : PMESH_CUT_SPANS - 1];
+    if (o.a != GHOST) {
+        place[count++] = s->degree[o.a];
+        place[count++] = s->state[0][o.a];
+    }
+    if (o.b != GHOST) {
+        place[count++] = s->degree[o.b];
+        place[count++] = s->state[1][o.b];
+    }
+    return count;
+}
 
-    const uint32_t span_class =
-        span < PMESH_CUT_SPANS ? span : PMESH_CUT_SPANS - 1;
-    const uint32_t ring_class = n < PMESH_CUT_RINGS ? n : PMESH_CUT_RINGS - 1;
-    cost += pmesh_cut_span[ghost ? 1 : 0][ring_class][span_class];
-    if (a != PMESH_NONE)
-        cost += s->topology[0][a];
-    if (b != PMESH_NONE)
-        cost += s->topology[1][b];
-    return (int32_t)cost;
+/* In 1/16 bit, up to a constant. */
+static int32_t option_cost(const shape *s, option o)
+{
+    int32_t term[TERMS], *place[5];
+    const int32_t *w = shape_weights(s, o);
+    int64_t cost = 0;
+    weigh_shape(s, o, term);
+    for (int t = 0; t < TERMS; t++)
+        cost += (int64_t)w[t] * term[t];
+    cost /= 256;
+    for (uint32_t i = list_places(s, o, place); i-- > 0;)
+        cost += *place[i];
+    return (int32_t)(cost / WEIGHT_ONE);
 }
 
 /* All legal cuts in a fixed order: by first, then end; the ghost last. */
-static uint32_t list_cuts(const shape *s, pmesh_cut *cuts, int32_t *costs)
+static uint32_t list_options(const shape *s, option *options)
 {
     const uint32_t n = s->count;
     uint32_t count = 0;
@@ -176,15 +225,12 @@ static uint32_t list_cuts(const shape *s, pmesh_cut *cuts, int32_t *costs)
         const uint32_t spans = s->open ? n - 1 - i : n - 1;
         for (uint32_t d = 1; d <= spans; d++) {
             const uint32_t j = i + d < n ? i + d : i + d - n;
-            cuts[count] = (pmesh_cut){ i, j };
-            costs[count++] = cut_cost(s, i, d, i, j);
+            options[count++] = (option){ (uint8_t)i, (uint8_t)j };
         }
     }
     for (uint32_t i = 0; s->open && i < n; i++) {
-        cuts[count] = (pmesh_cut){ i, PMESH_NONE };
-        costs[count++] = cut_cost(s, i, n - 1 - i, i, PMESH_NONE);
-        cuts[count] = (pmesh_cut){ PMESH_NONE, i };
-        costs[count++] = cut_cost(s, 0, i, PMESH_NONE, i);
+        options[count++] = (option){ (uint8_t)i, GHOST };
+        options[count++] = (option){ GHOST, (uint8_t)i };
     }
     return count;
 }
@@ -198,45 +244,113 @@ static uint32_t cheapest(const int32_t *costs, uint32_t count)
     return best;
 }
 
-/* Logarithmic class of the lead of the cheapest cut over the next. */
-static unsigned gap_class(int64_t gap)
+/* 2^(-cost / 16) of every option, the least cost as 65536; returns the sum. */
+static uint32_t make_shares(const int32_t *costs, uint32_t count, int32_t least,
+                            uint32_t *shares)
 {
-    unsigned k = 0;
-    while (k < PMESH_CUT_GAPS - 1 && gap >= (3 << k >> 1))
-        k++;
-    return k;
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const int64_t excess = (int64_t)costs[i] - least;
+        shares[i] = excess < 16 * 17
+                        ? pmesh_cut_share[excess % 16] >> (excess / 16)
+                        : 0;
+        sum += shares[i];
+    }
+    return sum;
+}
+
+static int half_octave(uint64_t value)
+{
+    int n = 0;
+    for (uint64_t square = value * value; square >>= 1;)
+        n++;
+    return n;
+}
+
+/* The odds of a share against the rest of the sum. */
+static unsigned odds_class(uint32_t share, uint32_t sum)
+{
+    const int k = half_octave(share) - half_octave(sum - share) + 12;
+    return k < 0 ? 0 : k >= PMESH_CUT_ODDS ? PMESH_CUT_ODDS - 1 : (unsigned)k;
+}
+
+static void adjust(int32_t *weight, int64_t change)
+{
+    const int64_t w = *weight - change;
+    *weight = (int32_t)(w > LARGEST_WEIGHT    ? LARGEST_WEIGHT
+                        : w < -LARGEST_WEIGHT ? -LARGEST_WEIGHT
+                                              : w);
+}
+
+/* One step down the gradient of the true cut's code length, as if it had been
+ * coded by the shares: each option is off by its share, less 1 for the true
+ * one. */
+static void learn(shape *s, const option *options, uint32_t count,
+                  const uint32_t *shares, uint32_t sum, uint32_t truth)
+{
+    const uint64_t per_sum = ((uint64_t)SHARE_ONE << 28) / sum;
+    for (uint32_t i = 0; i < count; i++) {
+        const int32_t error = (i == truth ? SHARE_ONE : 0) -
+                              (int32_t)(shares[i] * per_sum >> 28);
+        if (error > -LEAST_ERROR && error < LEAST_ERROR)
+            continue;
+        int32_t term[TERMS], *place[5];
+        int32_t *w = shape_weights(s, options[i]);
+        weigh_shape(s, options[i], term);
+        for (int t = 0; t < TERMS; t++)
+            adjust(&w[t], (int64_t)error * term[t] / LEARN_SHAPE);
+        for (uint32_t k = list_places(s, options[i], place); k-- > 0;)
+            adjust(place[k], error / LEARN_PLACE);
+    }
+}
+
+/* The rank of the true option among all by cost; each question "is it the
+ * cheapest left" is asked in the context of that option's odds. */
+static uint32_t code_rank(pmesh_codec *c, pmesh_coder *coder, bool open,
+                          int32_t *costs, const uint32_t *shares, uint32_t sum,
+                          uint32_t count, uint32_t truth)
+{
+    for (uint32_t rank = 0; rank + 1 < count; rank++) {
+        const uint32_t best = cheapest(costs, count);
+        pmesh_bit *m = &c->models.cut[open]
+                            [rank < PMESH_CUT_RANKS ? rank
+                                                    : PMESH_CUT_RANKS - 1]
+                            [odds_class(shares[best], sum)];
+        if (!pmesh_code_bit(coder, m, best != truth))
+            return best;
+        costs[best] = TAKEN;
+        sum -= shares[best];
+    }
+    return cheapest(costs, count);
 }
 
 void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
                     const pmesh_ring *ring, pmesh_cut *cut)
 {
     shape s;
-    pmesh_cut cuts[MAX_CUTS];
+    option options[MAX_CUTS];
     int32_t costs[MAX_CUTS];
+    uint32_t shares[MAX_CUTS], truth = 0;
 
     s.count = ring->count;
     s.open = ring->open;
+    s.weights = &c->models.cut_weights;
     shape_points(&s, c, v, ring);
     shape_sums(&s);
     shape_topology(&s, c, ring);
-    const uint32_t count = list_cuts(&s, cuts, costs);
-
-    uint32_t best = cheapest(costs, count);
-    for (uint32_t rank = 0; rank + 1 < count; rank++) {
-        const int32_t cost = costs[best];
-        costs[best] = TAKEN;
-        const uint32_t next = cheapest(costs, count);
-        const bool hit = coder->encoding && cuts[best].first == cut->first &&
-                         cuts[best].end == cut->end;
-        pmesh_bit *m = &c->models.cut[ring->open]
-                            [rank < PMESH_CUT_RANKS ? rank
-                                                    : PMESH_CUT_RANKS - 1]
-                            [gap_class((int64_t)costs[next] - cost)];
-        if (!pmesh_code_bit(coder, m, !hit)) {
-            *cut = cuts[best];
-            return;
-        }
-        best = next;
+    const uint32_t count = list_options(&s, options);
+    for (uint32_t i = 0; i < count; i++) {
+        costs[i] = option_cost(&s, options[i]);
+        if (options[i].a == (uint8_t)cut->first &&
+            options[i].b == (uint8_t)cut->end)
+            truth = i; /* PMESH_NONE and GHOST agree in their low bytes */
     }
-    *cut = cuts[best];
+    const uint32_t sum =
+        make_shares(costs, count, costs[cheapest(costs, count)], shares);
+    truth = code_rank(c, coder, s.open, costs, shares, sum, count, truth);
+    learn(&s, options, count, shares, sum, truth);
+
+    const option o = options[truth];
+    cut->first = o.a == GHOST ? PMESH_NONE : o.a;
+    cut->end = o.b == GHOST ? PMESH_NONE : o.b;
 }

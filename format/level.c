@@ -188,7 +188,7 @@ static void sweep(pmesh_codec *c)
         pmesh_predict(c, child_kind(c), u, m->parent[u],
                       m->position[m->parent[u]], begin, &p);
         for (int k = 0; k < 3; k++)
-            m->position[u][k] = clamp(p.position[k] / 16, c->bounds[k]);
+            m->position[u][k] = (int32_t)(p.position[k] / 16);
     }
 }
 
@@ -219,7 +219,10 @@ static bool code_moved_parent(pmesh_codec *c, pmesh_coder *coder,
     pmesh_predict(c, PMESH_PREDICT_MOVED_PARENT, v, u, mirrored, u + 1, &p);
     if (oracle)
         oracle->position(oracle->user, v, m->position[v]);
-    return pmesh_residual_code(c, coder, 1, &p, m->position[v]);
+    if (!pmesh_residual_code(c, coder, 1, &p, m->position[v]))
+        return false;
+    pmesh_predict_learn(&p, m->position[v]);
+    return true;
 }
 
 static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
@@ -235,6 +238,7 @@ static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
             oracle->position(oracle->user, u, m->position[u]);
         if (!pmesh_residual_code(c, coder, 0, &p, m->position[u]))
             return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
+        pmesh_predict_learn(&p, m->position[u]);
         c->importance[u - begin] =
             importance_of(m, u, m->position[v], &p);
         if (c->sizes.moves && !code_moved_parent(c, coder, oracle, u))

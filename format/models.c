@@ -26,10 +26,31 @@ static void wedge_init(pmesh_wedge_models *m)
     pmesh_number_init(&m->pick);
 }
 
+/* The tables are kept short; learning needs 8 bits more. */
+#define INIT_WEIGHTS(to, from) \
+    init_weights((int32_t *)(to), (const int16_t *)(from), \
+                 sizeof(from) / sizeof(int16_t))
+
+static void init_weights(int32_t *to, const int16_t *from, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        to[i] = from[i] * 256;
+}
+
+static void cut_weights_init(pmesh_cut_weights *w)
+{
+    INIT_WEIGHTS(w->shape, pmesh_cut_shape);
+    INIT_WEIGHTS(w->degree, pmesh_cut_degree);
+    INIT_WEIGHTS(w->state, pmesh_cut_state);
+    INIT_WEIGHTS(w->span, pmesh_cut_span);
+}
+
 void pmesh_models_init(pmesh_models *m)
 {
     INIT_BITS(m->flag);
     INIT_BITS(m->cut);
+    cut_weights_init(&m->cut_weights);
+    INIT_WEIGHTS(m->predict, pmesh_predict_weight);
     INIT_BITS(m->base);
     INIT_BITS(m->value_sign);
     pmesh_bits_init(&m->base_sign, 1);

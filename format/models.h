@@ -8,11 +8,12 @@
 
 #include "format/coder.h"
 #include "format/pmesh.h"
+#include "format/tables.h"
 
 enum {
     PMESH_FLAG_CONTEXTS = 8 * 6 * 5 * 7,
-    PMESH_CUT_RANKS = 10,
-    PMESH_CUT_GAPS = 12,
+    PMESH_CUT_RANKS = 4,
+    PMESH_CUT_ODDS = 32,  /* half octaves of a cut's odds against the rest */
     PMESH_SCALES = 60,    /* half octaves of an expected residual */
     PMESH_UNARY = 14,
     PMESH_SIZE_CLASSES = 24
@@ -43,9 +44,23 @@ typedef struct pmesh_wedge_models {
     pmesh_number pick;
 } pmesh_wedge_models;
 
+/* What a cut's cost is made of (SPEC 6.4), in 1/4096 bit; starts from the
+ * tables and learns from every cut. */
+typedef struct pmesh_cut_weights {
+    int32_t shape[3][2][5];
+    int32_t degree[PMESH_CUT_DEGREES];
+    int32_t state[PMESH_STATES][PMESH_STATES][PMESH_STATES];
+    int32_t span[2][PMESH_CUT_RINGS][PMESH_CUT_SPANS];
+} pmesh_cut_weights;
+
 typedef struct pmesh_models {
     pmesh_bit flag[PMESH_FLAG_CONTEXTS];
-    pmesh_bit cut[2][PMESH_CUT_RANKS][PMESH_CUT_GAPS];
+    pmesh_bit cut[2][PMESH_CUT_RANKS][PMESH_CUT_ODDS];
+    pmesh_cut_weights cut_weights;
+    /* Weights of the predictor's terms in 1/65536, see pmesh_predict_weight;
+     * they start there and learn from every position. */
+    int32_t predict[PMESH_PREDICT_KINDS][PMESH_PREDICT_CLASSES][3]
+                   [PMESH_PREDICT_TERMS][2];
     pmesh_residual_model residual[2]; /* of a child, of a moved parent */
     pmesh_mean across[2][PMESH_SIZE_CLASSES][3];
     pmesh_mean along[2][PMESH_SIZE_CLASSES][3];

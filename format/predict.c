@@ -3,7 +3,13 @@
 
 #include "format/tables.h"
 
-enum { FRACTION = 16, NORMAL_ONE = 16384, WEIGHT_ONE = 256 };
+enum {
+    FRACTION = 16,
+    NORMAL_ONE = 16384,
+    WEIGHT_ONE = 65536,
+    LEARN_RATE = WEIGHT_ONE / 32,
+    LARGEST_WEIGHT = 8 * WEIGHT_ONE
+};
 
 uint32_t pmesh_isqrt(uint64_t value)
 {
@@ -193,13 +199,38 @@ static uint8_t ring_class(const pmesh_ring *ring)
     return (uint8_t)(n < 10 ? n - 3 : 7);
 }
 
-void pmesh_predict(const pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
+/* The ring's mean and the weighted terms, each weighed along the surface and
+ * across it; within the bounds, as every vertex is. */
+static void add_terms(pmesh_prediction *p, const int32_t base[3],
+                      const int64_t mean[3], const int32_t bounds[3])
+{
+    int64_t along[3] = { 0, 0, 0 }, across = 0;
+    for (int t = 0; t < PMESH_PREDICT_TERMS; t++) {
+        const int32_t *w = p->weight[t];
+        int64_t height = 0;
+        for (int k = 0; k < 3; k++) {
+            along[k] += w[0] * p->term[t][k];
+            height += p->term[t][k] * p->normal[k];
+        }
+        p->height[t] = height / NORMAL_ONE;
+        across += (w[1] - w[0]) * p->height[t];
+    }
+    across /= WEIGHT_ONE;
+    for (int k = 0; k < 3; k++) {
+        const int64_t x = (int64_t)base[k] * FRACTION + mean[k] +
+                          along[k] / WEIGHT_ONE +
+                          across * p->normal[k] / NORMAL_ONE;
+        const int64_t limit = (int64_t)bounds[k] * FRACTION;
+        p->position[k] = x < 0 ? 0 : x > limit ? limit : x;
+    }
+}
+
+void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
                    uint32_t partner, const int32_t partner_position[3],
                    uint32_t provisional, pmesh_prediction *out)
 {
     pmesh_ring ring;
     star s;
-    int64_t term[PMESH_PREDICT_TERMS][3];
 
     if (!pmesh_ring_gather(&c->mesh, x, &ring)) {
         predict_blindly(partner_position, out);
@@ -208,7 +239,7 @@ void pmesh_predict(const pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
     star_make(&s, c, &ring, partner_position);
     star_normal(&s, out->normal);
     star_size(&s, out->normal, out);
-    make_terms(c, &s, &ring, x, partner, term);
+    make_terms(c, &s, &ring, x, partner, out->term);
 
     uint32_t unknown = 0;
     for (uint32_t i = 0; i < ring.count; i++)
@@ -216,19 +247,52 @@ void pmesh_predict(const pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
     out->unknown = (uint8_t)(unknown < 2 ? unknown : 2);
     out->ring_class = ring_class(&ring);
 
-    const int16_t(*w)[2] =
-        pmesh_predict_weight[kind][out->ring_class][out->unknown];
-    int64_t along[3] = { 0, 0, 0 }, across = 0;
-    for (int t = 0; t < PMESH_PREDICT_TERMS; t++) {
-        int64_t height = 0;
-        for (int k = 0; k < 3; k++) {
-            along[k] += w[t][0] * term[t][k];
-            height += term[t][k] * out->normal[k];
-        }
-        across += (w[t][1] - w[t][0]) * (height / NORMAL_ONE);
+    out->weight = c->models.predict[kind][out->ring_class][out->unknown];
+    add_terms(out, partner_position, s.mean, c->bounds);
+}
+
+static int64_t limited(int64_t value, int64_t limit)
+{
+    return value < -limit ? -limit : value > limit ? limit : value;
+}
+
+/* gain / norm <= 2 in size, as errors are limited to 2 sizes and the norm has
+ * at least the size's square: after scaling, products stay below 2^54. */
+static void adjust(int32_t *weight, int64_t gain, int64_t norm)
+{
+    while (norm >= (int64_t)1 << 40) {
+        norm /= 4;
+        gain /= 4;
     }
-    for (int k = 0; k < 3; k++)
-        out->position[k] = (int64_t)partner_position[k] * FRACTION +
-                           s.mean[k] + along[k] / WEIGHT_ONE +
-                           across * out->normal[k] / NORMAL_ONE / WEIGHT_ONE;
+    *weight = (int32_t)limited(*weight + gain * LEARN_RATE / norm,
+                               LARGEST_WEIGHT);
+}
+
+void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3])
+{
+    const int64_t size = p->size, square = size * size;
+    int64_t error[3], height = 0, norm[2] = { 4 * square, square / 4 };
+    if (!p->weight)
+        return;
+    for (int k = 0; k < 3; k++) {
+        error[k] = limited((int64_t)position[k] * FRACTION - p->position[k],
+                           2 * size);
+        height += error[k] * p->normal[k];
+    }
+    height /= NORMAL_ONE;
+    for (int t = 0; t < PMESH_PREDICT_TERMS; t++) {
+        const int64_t h = p->height[t] * p->height[t];
+        for (int k = 0; k < 3; k++)
+            norm[0] += p->term[t][k] * p->term[t][k];
+        norm[0] -= h;
+        norm[1] += h;
+    }
+    for (int t = 0; t < PMESH_PREDICT_TERMS; t++) {
+        const int64_t up = height * p->height[t];
+        int64_t all = 0;
+        for (int k = 0; k < 3; k++)
+            all += error[k] * p->term[t][k];
+        adjust(&p->weight[t][0], all - up, norm[0]);
+        adjust(&p->weight[t][1], up, norm[1]);
+    }
 }

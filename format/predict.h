@@ -22,14 +22,22 @@ typedef struct pmesh_prediction {
     uint8_t ring_class;  /* < PMESH_PREDICT_CLASSES */
     uint8_t unknown;     /* provisional members: 0, 1, 2 for more */
     uint8_t rough;       /* how far the ring is from plane, log classes */
+    /* What learning needs: the terms in 1/16 steps, their heights along the
+     * normal, and their weights; NULL if the ring was too large. */
+    int64_t term[PMESH_PREDICT_TERMS][3], height[PMESH_PREDICT_TERMS];
+    int32_t (*weight)[2];
 } pmesh_prediction;
 
 /* Predicts the position of x. `partner` is the other vertex of its split, and
  * `partner_position` what is known of it; members of the ring from
  * `provisional` on (by number) have no final position yet. */
-void pmesh_predict(const pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
+void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
                    uint32_t partner, const int32_t partner_position[3],
                    uint32_t provisional, pmesh_prediction *out);
+
+/* The position turned out to be this: one normalised step of the weights down
+ * the gradient of the squared error, along and across the surface apart. */
+void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3]);
 
 /* Integer square root, rounded down. */
 uint32_t pmesh_isqrt(uint64_t value);

@@ -84,6 +84,11 @@ const int16_t pmesh_cut_span[2][PMESH_CUT_RINGS][PMESH_CUT_SPANS] = {
     },
 };
 
+const uint32_t pmesh_cut_share[16] = {
+    65536, 62757, 60097, 57549, 55109, 52773, 50535, 48393,
+    46341, 44376, 42495, 40693, 38968, 37316, 35734, 34219
+};
+
 const int16_t pmesh_predict_weight[PMESH_PREDICT_KINDS]
                                   [PMESH_PREDICT_CLASSES][3]
                                   [PMESH_PREDICT_TERMS][2] = {

@@ -23,6 +23,9 @@ extern const int16_t
 extern const int16_t
     pmesh_cut_span[2][PMESH_CUT_RINGS][PMESH_CUT_SPANS];
 
+/* 65536 x 2^(-i / 16), rounded. */
+extern const uint32_t pmesh_cut_share[16];
+
 /* Weights in 1/256 of the terms that correct a ring's mean to a position
  * (SPEC 6.5): [subset child, moved child, moved parent][class of ring]
  * [provisional members 0, 1, more][term][along the surface, across it]. */
