@@ -16,6 +16,12 @@ static void residual_init(pmesh_residual_model *m)
     pmesh_number_init(&m->escape);
 }
 
+static void init_means(pmesh_mean *means, size_t size, uint32_t value)
+{
+    for (size_t i = 0; i < size / sizeof *means; i++)
+        means[i] = (pmesh_mean){ value, 0 };
+}
+
 static void wedge_init(pmesh_wedge_models *m)
 {
     INIT_BITS(m->ordinary);
@@ -62,10 +68,9 @@ void pmesh_models_init(pmesh_models *m)
             pmesh_number_init(&m->value[i][k]);
     for (int which = 0; which < 2; which++) {
         residual_init(&m->residual[which]);
-        for (int i = 0; i < PMESH_SIZE_CLASSES; i++)
-            for (int k = 0; k < 3; k++) {
-                m->along[which][i][k] = (pmesh_mean){ ALONG_START, 0 };
-                m->across[which][i][k] = (pmesh_mean){ ACROSS_START, 0 };
-            }
+        init_means((pmesh_mean *)m->along[which], sizeof m->along[which],
+                   ALONG_START);
+        init_means((pmesh_mean *)m->across[which], sizeof m->across[which],
+                   ACROSS_START);
     }
 }

@@ -16,7 +16,8 @@ enum {
     PMESH_CUT_ODDS = 32,  /* half octaves of a cut's odds against the rest */
     PMESH_SCALES = 60,    /* half octaves of an expected residual */
     PMESH_UNARY = 14,
-    PMESH_SIZE_CLASSES = 24
+    PMESH_IRREGULAR = 5,  /* irregular neighbours: 0 .. 3, more */
+    PMESH_ROUGH = 14      /* how far a ring is from plane */
 };
 
 /* Signed residuals of an expected size (SPEC 6.5). */
@@ -62,8 +63,8 @@ typedef struct pmesh_models {
     int32_t predict[PMESH_PREDICT_KINDS][PMESH_PREDICT_CLASSES][3]
                    [PMESH_PREDICT_TERMS][2];
     pmesh_residual_model residual[2]; /* of a child, of a moved parent */
-    pmesh_mean across[2][PMESH_SIZE_CLASSES][3];
-    pmesh_mean along[2][PMESH_SIZE_CLASSES][3];
+    pmesh_mean along[2][PMESH_PREDICT_CLASSES][3][PMESH_IRREGULAR];
+    pmesh_mean across[2][PMESH_ROUGH][3];
     pmesh_bit base[3][2];
     pmesh_number base_vertex;
     pmesh_number base_position;

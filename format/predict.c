@@ -28,17 +28,24 @@ uint32_t pmesh_isqrt(uint64_t value)
 /* The ring of x relative to a base point, in 1/16 steps: |coordinates| below
  * 2^28 for 24-bit grids. */
 typedef struct star {
-    uint32_t count;
+    uint32_t count, face_count;
     bool open;
     int64_t mean[3];
     int64_t point[PMESH_MAX_RING][3];
+    /* Relative to the mean and divided by `divisor`, a power of two, so that
+     * coordinates are below 2^26; and the cross product of spoke i and i + 1,
+     * below 2^54: 48 of them can be added. */
+    int64_t divisor;
+    int64_t spoke[PMESH_MAX_RING][3];
+    int64_t face[PMESH_MAX_RING][3];
 } star;
 
 static void star_make(star *s, const pmesh_codec *c, const pmesh_ring *ring,
                       const int32_t base[3])
 {
-    int64_t sum[3] = { 0, 0, 0 };
+    int64_t sum[3] = { 0, 0, 0 }, largest = 0;
     s->count = ring->count;
+    s->face_count = ring->face_count;
     s->open = ring->open;
     for (uint32_t i = 0; i < s->count; i++) {
         const int32_t *p = c->mesh.position[ring->vertex[i]];
@@ -49,38 +56,42 @@ static void star_make(star *s, const pmesh_codec *c, const pmesh_ring *ring,
     }
     for (int k = 0; k < 3; k++)
         s->mean[k] = sum[k] / s->count;
+    for (uint32_t i = 0; i < s->count; i++)
+        for (int k = 0; k < 3; k++) {
+            const int64_t d = s->point[i][k] - s->mean[k];
+            s->spoke[i][k] = d;
+            largest |= d < 0 ? -d : d;
+        }
+    s->divisor = 1;
+    while (largest / s->divisor >= (int64_t)1 << 26)
+        s->divisor *= 2;
+    for (uint32_t i = 0; i < s->count && s->divisor > 1; i++)
+        for (int k = 0; k < 3; k++)
+            s->spoke[i][k] /= s->divisor;
 }
 
-/* Sum of the face normals around the mean, scaled to length 16384. A cross
- * product has components below 2^59, 48 of them would overflow: the points are
- * first brought below 2^26. */
-static void star_normal(const star *s, int32_t normal[3])
+static void star_faces(star *s)
 {
-    int64_t q[PMESH_MAX_RING][3], largest = 0, sum[3] = { 0, 0, 0 };
-    for (uint32_t i = 0; i < s->count; i++)
-        for (int k = 0; k < 3; k++) {
-            q[i][k] = s->point[i][k] - s->mean[k];
-            largest |= q[i][k] < 0 ? -q[i][k] : q[i][k];
-        }
-    int64_t divisor = 1;
-    while (largest / divisor >= (int64_t)1 << 26)
-        divisor *= 2;
-    const uint32_t faces = s->open ? s->count - 1 : s->count;
-    for (uint32_t i = 0; i < s->count; i++)
-        for (int k = 0; k < 3; k++)
-            q[i][k] /= divisor;
-    for (uint32_t i = 0; i < faces; i++) {
-        const int64_t *a = q[i], *b = q[i + 1 < s->count ? i + 1 : 0];
+    for (uint32_t i = 0; i < s->face_count; i++) {
+        const int64_t *a = s->spoke[i];
+        const int64_t *b = s->spoke[i + 1 < s->count ? i + 1 : 0];
         for (int k = 0; k < 3; k++) {
             const int y = k == 2 ? 0 : k + 1, z = k == 0 ? 2 : k - 1;
-            sum[k] += a[y] * b[z] - a[z] * b[y];
+            s->face[i][k] = a[y] * b[z] - a[z] * b[y];
         }
     }
+}
 
-    largest = 0;
+/* Sum of the face normals, scaled to length 16384. */
+static void star_normal(const star *s, int32_t normal[3])
+{
+    int64_t largest = 0, sum[3] = { 0, 0, 0 };
+    for (uint32_t i = 0; i < s->face_count; i++)
+        for (int k = 0; k < 3; k++)
+            sum[k] += s->face[i][k];
     for (int k = 0; k < 3; k++)
         largest |= sum[k] < 0 ? -sum[k] : sum[k];
-    divisor = 1;
+    int64_t divisor = 1;
     while (largest / divisor >= (int64_t)1 << 30)
         divisor *= 2;
     uint64_t square = 0;
@@ -91,6 +102,67 @@ static void star_normal(const star *s, int32_t normal[3])
     const int64_t length = pmesh_isqrt(square);
     for (int k = 0; k < 3; k++)
         normal[k] = length ? (int32_t)(sum[k] * NORMAL_ONE / length) : 0;
+}
+
+/* About the length of v: the largest coordinate and 3/8 of the others. */
+static int64_t rough_length(const int64_t v[3])
+{
+    int64_t largest = 0, sum = 0;
+    for (int k = 0; k < 3; k++) {
+        const int64_t size = v[k] < 0 ? -v[k] : v[k];
+        sum += size;
+        if (size > largest)
+            largest = size;
+    }
+    return largest + (sum - largest) * 3 / 8;
+}
+
+/* A weighted mean of points: weights below 2^28, coordinates below 2^27. */
+typedef struct centroid {
+    int64_t sum[3], weight;
+} centroid;
+
+static void centroid_add(centroid *c, int64_t weight, const int64_t a[3],
+                         const int64_t b[3])
+{
+    for (int k = 0; k < 3; k++)
+        c->sum[k] += weight * (a[k] + b[k]);
+    c->weight += weight;
+}
+
+/* In 1/16 steps from the ring's mean. */
+static void centroid_point(const centroid *c, int64_t part, const star *s,
+                           int64_t out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = c->weight ? c->sum[k] / c->weight * s->divisor / part : 0;
+}
+
+/* Centres of the ring as polygon, as polyline, and of its spokes by length. */
+static void star_centres(const star *s, int64_t area[3], int64_t outline[3],
+                         int64_t spokes[3])
+{
+    static const int64_t zero[3] = { 0, 0, 0 };
+    centroid by_area = { { 0 }, 0 }, by_edge = { { 0 }, 0 },
+             by_spoke = { { 0 }, 0 };
+    int64_t largest = 0, divisor = 1;
+    for (uint32_t i = 0; i < s->face_count; i++)
+        largest |= rough_length(s->face[i]);
+    while (largest / divisor >= (int64_t)1 << 28)
+        divisor *= 2;
+    for (uint32_t i = 0; i < s->count; i++) {
+        const int64_t *a = s->spoke[i];
+        centroid_add(&by_spoke, rough_length(a), a, zero);
+        if (i >= s->face_count)
+            continue;
+        const int64_t *b = s->spoke[i + 1 < s->count ? i + 1 : 0];
+        const int64_t edge[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
+        centroid_add(&by_area, rough_length(s->face[i]) / divisor, a, b);
+        centroid_add(&by_edge, rough_length(edge), a, b);
+    }
+    centroid_point(&by_area, 3, s, area);
+    centroid_point(&by_edge, 2, s, outline);
+    centroid_point(&by_spoke, 1, s, spokes);
 }
 
 static void star_size(const star *s, const int32_t normal[3],
@@ -115,7 +187,7 @@ static void star_size(const star *s, const int32_t normal[3],
     const uint64_t mean_height = height / s->count;
     uint8_t rough = 0;
     uint64_t limit = (uint64_t)out->size;
-    while (rough < 13 && mean_height * 256 >= limit) {
+    while (rough < PMESH_ROUGH - 1 && mean_height * 256 >= limit) {
         limit = rough & 1 ? limit / 3 * 4 + 1 : limit * 3 / 2;
         rough++;
     }
@@ -180,13 +252,16 @@ static void make_terms(const pmesh_codec *c, const star *s,
         term[1][k] = (s->point[a][k] + s->point[b][k]) / 2 - s->mean[k];
     }
     bend(c, ring, x, term[2]);
+    star_centres(s, term[3], term[4], term[5]);
 }
 
 /* A ring beyond the bound: splits of its neighbours made it so large. */
 static void predict_blindly(const int32_t at[3], pmesh_prediction *out)
 {
     *out = (pmesh_prediction){ .size = 64 * FRACTION, .ring_class = 7,
-                               .unknown = 2, .rough = 13 };
+                               .unknown = 2,
+                               .irregular = PMESH_IRREGULAR - 1,
+                               .rough = PMESH_ROUGH - 1 };
     for (int k = 0; k < 3; k++)
         out->position[k] = (int64_t)at[k] * FRACTION;
 }
@@ -225,6 +300,23 @@ static void add_terms(pmesh_prediction *p, const int32_t base[3],
     }
 }
 
+/* The contexts: what is known of the ring's members. */
+static void classify(const pmesh_codec *c, const pmesh_ring *ring,
+                     uint32_t partner, uint32_t provisional,
+                     pmesh_prediction *p)
+{
+    uint32_t unknown = 0, irregular = 0;
+    for (uint32_t i = 0; i < ring->count; i++) {
+        const uint32_t y = ring->vertex[i];
+        irregular += c->degree[y] != 6;
+        unknown += y >= provisional && y != partner;
+    }
+    p->ring_class = ring_class(ring);
+    p->unknown = (uint8_t)(unknown < 2 ? unknown : 2);
+    p->irregular = (uint8_t)(irregular < PMESH_IRREGULAR ? irregular
+                                                         : PMESH_IRREGULAR - 1);
+}
+
 void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
                    uint32_t partner, const int32_t partner_position[3],
                    uint32_t provisional, pmesh_prediction *out)
@@ -237,16 +329,12 @@ void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
         return;
     }
     star_make(&s, c, &ring, partner_position);
+    star_faces(&s);
     star_normal(&s, out->normal);
     star_size(&s, out->normal, out);
     make_terms(c, &s, &ring, x, partner, out->term);
 
-    uint32_t unknown = 0;
-    for (uint32_t i = 0; i < ring.count; i++)
-        unknown += ring.vertex[i] >= provisional && ring.vertex[i] != partner;
-    out->unknown = (uint8_t)(unknown < 2 ? unknown : 2);
-    out->ring_class = ring_class(&ring);
-
+    classify(c, &ring, partner, provisional, out);
     out->weight = c->models.predict[kind][out->ring_class][out->unknown];
     add_terms(out, partner_position, s.mean, c->bounds);
 }

@@ -21,6 +21,7 @@ typedef struct pmesh_prediction {
     uint32_t size;       /* root mean square radius of the ring, 1/16 steps */
     uint8_t ring_class;  /* < PMESH_PREDICT_CLASSES */
     uint8_t unknown;     /* provisional members: 0, 1, 2 for more */
+    uint8_t irregular;   /* neighbours with other than 6 neighbours, at most 4 */
     uint8_t rough;       /* how far the ring is from plane, log classes */
     /* What learning needs: the terms in 1/16 steps, their heights along the
      * normal, and their weights; NULL if the ring was too large. */

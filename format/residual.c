@@ -159,21 +159,22 @@ static int64_t gauss_given(const gauss *g, int k, const int64_t d[3],
 bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
                          const pmesh_prediction *p, int32_t position[3])
 {
-    pmesh_mean *m_along = &c->models.along[which][p->ring_class][p->unknown];
-    pmesh_mean *m_across = &c->models.across[which][p->rough][p->unknown];
+    pmesh_models *m = &c->models;
+    pmesh_mean *along =
+        &m->along[which][p->ring_class][p->unknown][p->irregular];
+    pmesh_mean *across = &m->across[which][p->rough][p->unknown];
     int axis[3];
     int64_t d[3] = { 0, 0, 0 };
 
     axis_order(p->normal, axis);
-    const gauss g = gauss_make(p->normal, axis, expected(m_along, p->size),
-                               expected(m_across, p->size));
+    const gauss g = gauss_make(p->normal, axis, expected(along, p->size),
+                               expected(across, p->size));
     for (int k = 0; k < 3; k++) {
         const int a = axis[k];
         uint32_t deviation;
         const int64_t mean = p->position[a] + gauss_given(&g, k, d, &deviation);
-        const int64_t value =
-            code_coordinate(coder, &c->models.residual[which], mean, deviation,
-                            position[a]);
+        const int64_t value = code_coordinate(coder, &m->residual[which], mean,
+                                              deviation, position[a]);
         if (value < 0 || value > c->bounds[a])
             return false;
         position[a] = (int32_t)value;
@@ -186,10 +187,9 @@ bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
         height += d[k] * g.n[k];
         square += (uint64_t)(d[k] * d[k]);
     }
-    const uint64_t across = (uint64_t)(height < 0 ? -height : height) / ONE;
-    const uint64_t flat =
-        square > across * across ? square - across * across : 0;
-    learn(m_along, (uint64_t)pmesh_isqrt(flat) * 181 / 256, p->size);
-    learn(m_across, across, p->size);
+    const uint64_t up = (uint64_t)(height < 0 ? -height : height) / ONE;
+    const uint64_t flat = square > up * up ? square - up * up : 0;
+    learn(along, (uint64_t)pmesh_isqrt(flat) * 181 / 256, p->size);
+    learn(across, up, p->size);
     return true;
 }

@@ -30,7 +30,7 @@ extern const uint32_t pmesh_cut_share[16];
  * (SPEC 6.5): [subset child, moved child, moved parent][class of ring]
  * [provisional members 0, 1, more][term][along the surface, across it]. */
 enum { PMESH_PREDICT_KINDS = 3, PMESH_PREDICT_CLASSES = 9,
-       PMESH_PREDICT_TERMS = 3 };
+       PMESH_PREDICT_TERMS = 6 };
 extern const int16_t pmesh_predict_weight[PMESH_PREDICT_KINDS]
                                          [PMESH_PREDICT_CLASSES][3]
                                          [PMESH_PREDICT_TERMS][2];
