@@ -79,6 +79,7 @@ pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
         .content_hash = h->content_hash,
         .profile = h->profile,
         .placement = h->sizes.moves ? PMESH_OPTIMAL : PMESH_SUBSET,
+        .base_coder = h->base_coder,
         .grid = h->grid,
         .faces = h->sizes.faces,
         .mesh_vertices = h->sizes.vertices,

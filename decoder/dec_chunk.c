@@ -43,6 +43,11 @@ pmesh_status dec_chunk_begin(pmesh_decoder *dec)
                    : corrupt(dec, "SPEC 5.2: a names chunk out of place");
     if (type == PMESH_CHUNK_BASE && dec->has_base)
         return corrupt(dec, "SPEC 5.2: a second base mesh");
+    if (type == PMESH_CHUNK_BASE && dec->header.base_coder &&
+        !dec->config.base_decoder)
+        return dec_fail(dec, PMESH_E_UNSUPPORTED,
+                        "SPEC 6.2: a Draco base mesh, and the decoder was "
+                        "given no base_decoder");
     if (type != PMESH_CHUNK_BASE && !dec->has_base)
         return corrupt(dec, "SPEC 5.2: a chunk before the base mesh");
     if (type == PMESH_CHUNK_END)
@@ -127,14 +132,40 @@ static pmesh_status finish_level(pmesh_decoder *dec)
     return PMESH_OK;
 }
 
+/* The Draco buffer at the start of a payload, and its size before it. */
+static pmesh_status take_draco(pmesh_decoder *dec, pmesh_cursor *in)
+{
+    const pmesh_header_chunk *h = &dec->header;
+    const uint64_t size = pmesh_get_varint(in);
+    if (in->overrun || size > (size_t)(in->end - in->next)) {
+        dec->codec.rule = "SPEC 6.2: a Draco buffer larger than its chunk";
+        return PMESH_E_CORRUPT;
+    }
+    const pmesh_base_source source = { dec->config.base_decoder,
+                                       dec->config.base_user, in->next,
+                                       (size_t)size };
+    in->next += size;
+    return pmesh_base_import(&dec->codec, &source, h->base_vertices,
+                             h->sizes.base_faces);
+}
+
 static pmesh_status take_base(pmesh_decoder *dec)
 {
-    pmesh_coder coder;
+    pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->size);
     const pmesh_header_chunk *h = &dec->header;
-    pmesh_coder_decode(&coder, dec->payload, dec->size);
-    pmesh_status status =
-        pmesh_base_code(&dec->codec, &coder, NULL, h->base_vertices,
-                        h->sizes.base_faces, h->base_wedges);
+    const bool native = h->base_coder == PMESH_BASE_NATIVE;
+    pmesh_status status = native ? PMESH_OK : take_draco(dec, &in);
+    if (status != PMESH_OK)
+        return dec_fail(dec, status, dec->codec.rule);
+
+    pmesh_coder coder;
+    pmesh_coder_decode(&coder, in.next, (size_t)(in.end - in.next));
+    if (native)
+        status = pmesh_base_code(&dec->codec, &coder, NULL, h->base_vertices,
+                                 h->sizes.base_faces);
+    if (status == PMESH_OK)
+        status = pmesh_base_attributes_code(&dec->codec, &coder, NULL,
+                                            h->base_wedges);
     if (status != PMESH_OK)
         return dec_fail(dec, status, dec->codec.rule);
     if (!pmesh_coder_finish(&coder))

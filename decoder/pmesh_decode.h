@@ -40,6 +40,10 @@ typedef struct pmesh_decoder_config {
     pmesh_allocator allocator; /* default: malloc and free */
     uint64_t max_memory;       /* bytes of the block; 0: 4 GiB */
     uint32_t max_faces;        /* 0: 2^28 */
+    pmesh_base_decode base_decoder; /* for files with a Draco base mesh; NULL:
+                                       they end with E_UNSUPPORTED. What it
+                                       allocates is its own affair */
+    void *base_user;
 } pmesh_decoder_config;
 
 PMESH_API pmesh_decoder_config pmesh_decoder_config_default(void);
@@ -65,7 +69,8 @@ PMESH_API void pmesh_decoder_destroy(pmesh_decoder *dec);
  * Returns PMESH_OK once the end of the file was read (further bytes are
  * ignored), PMESH_NEED_DATA before. A negative status is final: later calls
  * return it again, and the mesh stays readable and refinable as far as it was
- * decoded: E_MAGIC, E_VERSION, E_CORRUPT, E_CHECKSUM, E_LIMIT, E_MEMORY.
+ * decoded: E_MAGIC, E_VERSION, E_CORRUPT, E_CHECKSUM, E_LIMIT, E_MEMORY,
+ * E_UNSUPPORTED.
  */
 PMESH_API pmesh_status pmesh_decoder_feed(pmesh_decoder *dec, const void *data,
                                           size_t size);
@@ -86,6 +91,7 @@ typedef struct pmesh_header {
     uint64_t bytes;        /* the complete file */
     pmesh_profile profile;
     pmesh_placement placement;
+    pmesh_base_coder base_coder;
     pmesh_grid grid;
     int32_t bounds[3];      /* largest grid coordinate of each axis */
     uint32_t faces;

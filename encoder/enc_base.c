@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * enc_base.c - hands the base mesh, what contraction left, to the codec.
+ * enc_base.c - hands the base mesh, what contraction left, to the codec; or to
+ * a hook, whose numbers for it the codec then takes over.
  */
 #include <string.h>
 
+#include "encoder/enc_match.h"
 #include "encoder/enc_replay.h"
 #include "format/alloc.h"
+
+enum { SIZE_ROOM = 5 }; /* of a varint below 2^35 */
 
 /* The base mesh with numbers of its own, and where they come from. */
 typedef struct base_mesh {
@@ -103,11 +107,9 @@ static void base_pair(base_mesh *b)
                                            b->mesh.vertex[h])];
 }
 
-/* Connectivity is known: attributes, and all that follows, need the maps. */
-static void base_done(void *user)
+/* The shape is known: attributes, and all that follows, need the maps. */
+static void fill_maps(enc_replay *r, const base_mesh *b)
 {
-    enc_replay *r = user;
-    const base_mesh *b = r->base;
     for (uint32_t h = 0; h < b->edge_count; h++)
         r->corner_of[h] = b->corner[b->edge_of_codec[h]];
     for (uint32_t i = 0; i < r->base_vertices; i++) {
@@ -116,25 +118,95 @@ static void base_done(void *user)
     }
 }
 
-pmesh_status enc_replay_base(enc_replay *r, pmesh_coder *coder)
+static pmesh_status code_natively(enc_replay *r, const base_mesh *b,
+                                  pmesh_coder *coder)
+{
+    pmesh_oracle oracle = r->oracle;
+    oracle.base = &b->mesh;
+    oracle.base_edge = b->edge_of_codec;
+    oracle.base_vertex = b->codec_vertex;
+    return pmesh_base_code(&r->codec, coder, &oracle, r->base_vertices,
+                           r->base_faces);
+}
+
+/* Half-edges of the codec's mesh, which came from the hook, and its vertices. */
+static pmesh_status find_maps(enc_replay *r, const base_mesh *b, bool *same)
+{
+    const pmesh_mesh *m = &r->codec.mesh;
+    const pmesh_status status =
+        enc_match(&r->allocator, &b->mesh, m, b->edge_of_codec, same);
+    for (uint32_t h = 0; *same && h < b->edge_count; h++)
+        b->codec_vertex[b->mesh.vertex[b->edge_of_codec[h]]] = m->vertex[h];
+    return status;
+}
+
+/* Writes size and bytes of a Draco buffer and takes over its numbers. *done is
+ * false if Draco cannot hold this mesh: then nothing was written. */
+static pmesh_status code_by_draco(enc_replay *r, const base_mesh *b,
+                                  const pmesh_encoder_config *config,
+                                  pmesh_writer *out, bool *done)
+{
+    const size_t room = out->capacity - SIZE_ROOM;
+    uint8_t *data = out->data + SIZE_ROOM;
+    size_t size = 0;
+    *done = false;
+    pmesh_status status = config->base_encoder(
+        config->base_user, &b->mesh.position[0][0], r->base_vertices,
+        b->mesh.vertex, r->base_faces, data, room, &size);
+    if (size > room)
+        status = PMESH_E_LIMIT;
+    if (status == PMESH_OK) {
+        const pmesh_base_source source = { config->base_decoder,
+                                           config->base_user, data, size };
+        status = pmesh_base_import(&r->codec, &source, r->base_vertices,
+                                   r->base_faces);
+    }
+    if (status == PMESH_OK)
+        status = find_maps(r, b, done);
+    if (*done) {
+        pmesh_put_varint(out, size);
+        memmove(out->data + out->size, data, size);
+        out->size += size;
+    } else {
+        r->codec.mesh.vertex_count = r->codec.mesh.face_count = 0;
+    }
+    return status == PMESH_E_MEMORY ? status : PMESH_OK;
+}
+
+static pmesh_status code_base(enc_replay *r, base_mesh *b,
+                              const pmesh_encoder_config *config,
+                              pmesh_writer *out)
+{
+    pmesh_coder coder;
+    bool done = false;
+    pmesh_status status = PMESH_OK;
+    base_fill(b, r);
+    base_pair(b);
+    if (config->base_coder == PMESH_BASE_DRACO)
+        status = code_by_draco(r, b, config, out, &done);
+    r->base_coder = done ? PMESH_BASE_DRACO : PMESH_BASE_NATIVE;
+    pmesh_coder_encode(&coder, out);
+    if (status == PMESH_OK && !done)
+        status = code_natively(r, b, &coder);
+    if (status != PMESH_OK)
+        return status;
+    fill_maps(r, b);
+    status = pmesh_base_attributes_code(&r->codec, &coder, &r->oracle,
+                                        r->codec.mesh.wedge_capacity);
+    if (status != PMESH_OK)
+        return status;
+    return pmesh_coder_finish(&coder) ? PMESH_OK : PMESH_E_LIMIT;
+}
+
+pmesh_status enc_replay_base(enc_replay *r, const pmesh_encoder_config *config,
+                             pmesh_writer *out)
 {
     base_mesh b = { .edge_count = 3 * r->base_faces,
                     .table_size = pmesh_base_scratch(r->base_faces) };
-    pmesh_status status = PMESH_E_MEMORY;
     enc_replay_label(r, r->schedule->contraction_count);
-    if (base_allocate(&b, r)) {
-        base_fill(&b, r);
-        base_pair(&b);
-        r->base = &b;
-        r->oracle.base = &b.mesh;
-        r->oracle.base_edge = b.edge_of_codec;
-        r->oracle.base_vertex = b.codec_vertex;
-        r->oracle.base_done = base_done;
-        status = pmesh_base_code(&r->codec, coder, &r->oracle,
-                                 r->base_vertices, r->base_faces,
-                                 r->codec.mesh.wedge_capacity);
-        r->base = NULL;
-    }
+    const pmesh_status status = base_allocate(&b, r)
+                                    ? code_base(r, &b, config, out)
+                                    : PMESH_E_MEMORY;
     base_free(&b, r);
     return status;
 }

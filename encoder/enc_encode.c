@@ -47,6 +47,9 @@ static bool config_is_sound(const pmesh_encoder_config *c)
     return within(c->profile, PMESH_COMPACT, PMESH_QUALITY) &&
            within(c->placement, PMESH_SUBSET, PMESH_OPTIMAL) &&
            within(c->metric, PMESH_MEMORYLESS, PMESH_ACCUMULATED) &&
+           within(c->base_coder, PMESH_BASE_NATIVE, PMESH_BASE_DRACO) &&
+           (c->base_coder == PMESH_BASE_NATIVE ||
+            (c->base_encoder && c->base_decoder)) &&
            within(c->position_bits, 4, 24) && within(c->normal_bits, 4, 16) &&
            within(c->texcoord_bits, 4, 16) && within(c->color_bits, 4, 16) &&
            within(c->generic_bits, 4, 16) && is_amount(c->weld) &&
@@ -141,12 +144,11 @@ static void write_names(job *j, const pmesh_mesh_input *in)
 static pmesh_status write_base(job *j)
 {
     pmesh_writer out = { j->room, 0, j->room_size, false };
-    pmesh_coder coder;
-    pmesh_coder_encode(&coder, &out);
-    const pmesh_status status = enc_replay_base(&j->replay, &coder);
+    const pmesh_status status =
+        enc_replay_base(&j->replay, &j->config, &out);
     if (status != PMESH_OK)
         return status;
-    if (!pmesh_coder_finish(&coder) || out.size > PMESH_MAX_CHUNK_SIZE)
+    if (out.size > PMESH_MAX_CHUNK_SIZE)
         return PMESH_E_LIMIT;
     enc_stream_chunk(&j->stream, PMESH_CHUNK_BASE, j->room,
                      (uint32_t)out.size);
@@ -254,6 +256,7 @@ static void fill_header(job *j)
     pmesh_header_chunk *h = &j->header;
     const enc_mesh *m = &j->mesh;
     h->profile = j->config.profile;
+    h->base_coder = j->replay.base_coder;
     h->grid = m->grid;
     memcpy(h->bounds, m->bounds, sizeof h->bounds);
     h->sizes.value_count = m->value_count;
@@ -273,6 +276,7 @@ static void fill_report(job *j, uint64_t header_size, uint64_t file_size)
     r->faces = c->mesh.face_count;
     r->vertices = c->mesh.vertex_count;
     r->wedges = c->mesh.wedge_count;
+    r->base_coder = h->base_coder;
     r->base_faces = h->levels[0].faces;
     r->base_vertices = h->levels[0].vertices;
     r->level_count = h->level_count;

@@ -44,7 +44,7 @@ typedef struct enc_replay {
     uint32_t batch;       /* being replayed */
     uint32_t splits_left; /* of it */
     uint32_t base_faces, base_vertices;
-    const struct base_mesh *base; /* while it is being coded: enc_base.c */
+    pmesh_base_coder base_coder; /* who coded the base, once it is */
 } enc_replay;
 
 /* Prepares everything up to the empty codec. Returns PMESH_OK or E_MEMORY. */
@@ -52,8 +52,10 @@ pmesh_status enc_replay_create(enc_replay *r, const enc_mesh *mesh,
                                const enc_schedule *schedule, bool moves);
 void enc_replay_destroy(enc_replay *r);
 
-/* Codes the base mesh. */
-pmesh_status enc_replay_base(enc_replay *r, pmesh_coder *coder);
+/* Writes the payload of the base mesh. If the config's hook cannot hold it, it
+ * is coded natively: see base_coder. */
+pmesh_status enc_replay_base(enc_replay *r, const pmesh_encoder_config *config,
+                             pmesh_writer *out);
 
 /* Labels of the mesh in which contractions 0 .. done - 1 have happened. */
 void enc_replay_label(enc_replay *r, uint32_t done);

@@ -18,7 +18,7 @@
  * in pieces. No face is lost at full detail except those the report counts.
  *
  * The same input and config give the same bytes on every machine, whatever
- * `threads` is. The bytes may differ between versions of this library.
+ * `threads` is, as far as hooks do. The bytes may differ between versions of this library.
  */
 #ifndef PMESH_ENCODE_H
 #define PMESH_ENCODE_H
@@ -68,6 +68,18 @@ typedef enum pmesh_metric {
     PMESH_ACCUMULATED = 1 /* quadrics summed from the original (1997) */
 } pmesh_metric;
 
+/*
+ * Hook: writes a base mesh into at most `capacity` bytes at `out` as a Draco
+ * buffer, with positions as they are, and sets *size. No two vertices may
+ * become one, even at one position. Returns PMESH_OK, or PMESH_E_MEMORY; any
+ * other status says that Draco cannot hold this mesh.
+ */
+typedef pmesh_status (*pmesh_base_encode)(void *user, const int32_t *positions,
+                                          uint32_t vertex_count,
+                                          const uint32_t *indices,
+                                          uint32_t face_count, void *out,
+                                          size_t capacity, size_t *size);
+
 /* Called now and then with done in 0 .. 1; a non-zero return cancels. */
 typedef int (*pmesh_progress)(void *user, const char *stage, double done);
 
@@ -90,6 +102,13 @@ typedef struct pmesh_encoder_config {
     double base_ratio;         /* ... or this share of the faces; 0: no stop */
     double base_error;         /* ... or when the next contraction would exceed
                                   this distance, model units; 0: no such stop */
+    pmesh_base_coder base_coder; /* default PMESH_BASE_NATIVE; Draco needs both
+                                    hooks, and is smaller from about 10,000
+                                    faces on. A base that it cannot hold is
+                                    coded natively: see the report */
+    pmesh_base_encode base_encoder;
+    pmesh_base_decode base_decoder; /* the numbers it gives are the file's */
+    void *base_user;                /* of both hooks */
     uint32_t threads;          /* 0 or 1: this thread only */
     pmesh_progress progress;   /* NULL: none */
     void *progress_user;
@@ -110,6 +129,7 @@ typedef struct pmesh_encode_report {
     uint32_t cut_vertices;        /* added where the surface is not manifold */
     uint32_t components;          /* connected pieces of the surface */
     uint32_t faces, vertices, wedges; /* full detail of the file */
+    pmesh_base_coder base_coder;  /* the one that was used */
     uint32_t base_faces, base_vertices;
     uint32_t level_count;
     pmesh_level levels[PMESH_MAX_LEVELS];

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * base.c - codes the base mesh (SPEC 6.2): faces grow over gates, the open
- * half-edges of the faces before, first in first out.
+ * half-edges of the faces before, first in first out; or a hook gives them all.
  */
+#include <string.h>
+
 #include "format/codec.h"
 #include "format/wedge.h"
 
@@ -249,40 +251,6 @@ static pmesh_status code_connectivity(base *b)
     return status;
 }
 
-/* At a boundary first[] is the half-edge without a twin. */
-static pmesh_status settle_boundaries(base *b)
-{
-    pmesh_mesh *m = &b->c->mesh;
-    for (uint32_t h = 0; h < 3 * m->face_count; h++)
-        if (m->twin[h] == PMESH_NONE)
-            m->first[m->vertex[h]] = h;
-    const char *broken = pmesh_mesh_check(m, (uint8_t *)b->table);
-    return broken ? corrupt(b, "SPEC 6.2: the base mesh is not a manifold")
-                  : PMESH_OK;
-}
-
-static pmesh_status code_attributes(base *b)
-{
-    pmesh_codec *c = b->c;
-    pmesh_mesh *m = &c->mesh;
-    pmesh_status status = PMESH_OK;
-    for (uint32_t f = 0; f < m->face_count && status == PMESH_OK; f++) {
-        const uint32_t guess = f && m->material ? m->material[f - 1] : 0;
-        status = pmesh_material_code(c, b->coder, b->oracle, f, guess, guess);
-    }
-    if (!m->value_count) {
-        m->wedge_count = m->vertex_count;
-        return status;
-    }
-    for (uint32_t h = 0; h < 3 * m->face_count; h++)
-        m->wedge[h] = PMESH_NONE;
-    for (uint32_t v = 0; v < m->vertex_count && status == PMESH_OK; v++)
-        status = pmesh_wedge_ring_code(c, b->coder, b->oracle, v);
-    for (uint32_t w = 0; w < m->wedge_count && status == PMESH_OK; w++)
-        status = pmesh_wedge_values_code(c, b->coder, b->oracle, w);
-    return status;
-}
-
 /* Neighbours: one per face, and one more at a boundary. */
 static void count_degrees(pmesh_codec *c)
 {
@@ -293,29 +261,117 @@ static void count_degrees(pmesh_codec *c)
         c->degree[m->vertex[h]]++;
 }
 
-pmesh_status pmesh_base_code(pmesh_codec *c, pmesh_coder *coder,
-                             const pmesh_oracle *oracle, uint32_t vertices,
-                             uint32_t faces, uint32_t wedges)
+/* At a boundary first[] is the half-edge without a twin. */
+static pmesh_status settle(base *b)
 {
-    base b = { .c = c, .coder = coder, .oracle = oracle,
-               .vertices = vertices, .faces = faces,
-               .table = c->base_scratch,
-               .mask = pmesh_base_scratch(faces) - 1 };
+    pmesh_mesh *m = &b->c->mesh;
+    for (uint32_t h = 0; h < 3 * m->face_count; h++)
+        if (m->twin[h] == PMESH_NONE)
+            m->first[m->vertex[h]] = h;
+    if (pmesh_mesh_check(m, (uint8_t *)b->table))
+        return corrupt(b, "SPEC 6.2: the base mesh is not a manifold");
+    count_degrees(b->c);
+    return PMESH_OK;
+}
+
+static base begin(pmesh_codec *c, uint32_t vertices, uint32_t faces)
+{
+    const base b = { .c = c, .vertices = vertices, .faces = faces,
+                     .table = c->base_scratch,
+                     .mask = pmesh_base_scratch(faces) - 1 };
     for (uint64_t i = 0; i <= b.mask; i++)
         b.table[i] = PMESH_NONE;
     c->block = (pmesh_block){ 0 };
-    c->wedge_limit = wedges;
+    return b;
+}
 
-    pmesh_status status = code_connectivity(&b);
+pmesh_status pmesh_base_code(pmesh_codec *c, pmesh_coder *coder,
+                             const pmesh_oracle *oracle, uint32_t vertices,
+                             uint32_t faces)
+{
+    base b = begin(c, vertices, faces);
+    b.coder = coder;
+    b.oracle = oracle;
+    const pmesh_status status = code_connectivity(&b);
+    return status == PMESH_OK ? settle(&b) : status;
+}
+
+static pmesh_status import_vertices(base *b)
+{
+    pmesh_mesh *m = &b->c->mesh;
+    for (uint32_t v = 0; v < b->vertices; v++) {
+        for (int k = 0; k < 3; k++)
+            if (m->position[v][k] < 0 || m->position[v][k] > b->c->bounds[k])
+                return corrupt(b, "SPEC 6.2: a base vertex is out of bounds");
+        m->parent[v] = PMESH_NONE;
+        m->first[v] = PMESH_NONE;
+    }
+    m->vertex_count = b->vertices;
+    return PMESH_OK;
+}
+
+static pmesh_status import_faces(base *b)
+{
+    const uint32_t *corner = b->c->mesh.vertex;
+    pmesh_status status = PMESH_OK;
+    for (uint32_t h = 0; h < 3 * b->faces; h++)
+        if (corner[h] >= b->vertices)
+            return corrupt(b, "SPEC 6.2: no such base vertex");
+    for (uint32_t f = 0; f < b->faces && status == PMESH_OK; f++, corner += 3)
+        status = add_face(b, corner[0], corner[1], corner[2], PMESH_NONE);
+    return status;
+}
+
+pmesh_status pmesh_base_import(pmesh_codec *c, const pmesh_base_source *source,
+                               uint32_t vertices, uint32_t faces)
+{
+    base b = begin(c, vertices, faces);
+    pmesh_mesh *m = &c->mesh;
+    /* A hook that leaves something out shall not show old memory. */
+    memset(m->position, 0, vertices * sizeof *m->position);
+    memset(m->vertex, 0, 3 * (size_t)faces * sizeof *m->vertex);
+    pmesh_status status =
+        source->decode(source->user, source->data, source->size, vertices,
+                       faces, &m->position[0][0], m->vertex);
+    if (status != PMESH_OK) {
+        c->rule = "SPEC 6.2: the Draco buffer does not hold the base mesh";
+        status = status == PMESH_E_MEMORY ? status : PMESH_E_CORRUPT;
+    }
     if (status == PMESH_OK)
-        status = settle_boundaries(&b);
-    if (status == PMESH_OK && oracle)
-        oracle->base_done(oracle->user);
+        status = import_vertices(&b);
     if (status == PMESH_OK)
-        status = code_attributes(&b);
-    if (status == PMESH_OK && !oracle && c->mesh.wedge_count != wedges)
-        status = corrupt(&b, "SPEC 6.2: fewer base wedges than declared");
+        status = import_faces(&b);
     if (status == PMESH_OK)
-        count_degrees(c);
+        status = settle(&b);
+    if (status != PMESH_OK)
+        m->vertex_count = m->face_count = 0;
+    return status;
+}
+
+pmesh_status pmesh_base_attributes_code(pmesh_codec *c, pmesh_coder *coder,
+                                        const pmesh_oracle *oracle,
+                                        uint32_t wedges)
+{
+    pmesh_mesh *m = &c->mesh;
+    pmesh_status status = PMESH_OK;
+    c->wedge_limit = wedges;
+    for (uint32_t f = 0; f < m->face_count && status == PMESH_OK; f++) {
+        const uint32_t guess = f && m->material ? m->material[f - 1] : 0;
+        status = pmesh_material_code(c, coder, oracle, f, guess, guess);
+    }
+    if (m->value_count) {
+        for (uint32_t h = 0; h < 3 * m->face_count; h++)
+            m->wedge[h] = PMESH_NONE;
+        for (uint32_t v = 0; v < m->vertex_count && status == PMESH_OK; v++)
+            status = pmesh_wedge_ring_code(c, coder, oracle, v);
+        for (uint32_t w = 0; w < m->wedge_count && status == PMESH_OK; w++)
+            status = pmesh_wedge_values_code(c, coder, oracle, w);
+    } else {
+        m->wedge_count = m->vertex_count;
+    }
+    if (status == PMESH_OK && !oracle && m->wedge_count != wedges) {
+        c->rule = "SPEC 6.2: fewer base wedges than declared";
+        status = PMESH_E_CORRUPT;
+    }
     return status;
 }

@@ -39,12 +39,10 @@ typedef struct pmesh_oracle {
     void *user;
     /* The base mesh in any numbering; filled in by pmesh_base_code(): of each
      * of the codec's half-edges that of `base`, of each of base's vertices the
-     * codec's number (PMESH_NONE before). base_done() is told when they are
-     * complete; key, number, values and material are asked after that. */
+     * codec's number (PMESH_NONE before). */
     const pmesh_mesh *base;
     uint32_t *base_edge;
     uint32_t *base_vertex;
-    void (*base_done)(void *user);
 
     bool (*splits)(void *user, uint32_t vertex);
     void (*cut)(void *user, uint32_t vertex, const pmesh_ring *ring,
@@ -130,11 +128,29 @@ void pmesh_codec_limit_values(pmesh_codec *c, const pmesh_attribute *attributes,
  * their number. */
 uint64_t pmesh_base_scratch(uint32_t faces);
 
-/* Codes the base mesh into the empty mesh of `c`: `vertices`, `faces` and
- * `wedges` as the header says (when encoding, wedges is an upper bound). */
+/* Codes shape and positions of the base mesh into the empty mesh of `c`. */
 pmesh_status pmesh_base_code(pmesh_codec *c, pmesh_coder *coder,
                              const pmesh_oracle *oracle, uint32_t vertices,
-                             uint32_t faces, uint32_t wedges);
+                             uint32_t faces);
+
+/* A base mesh that a hook decodes from `data`. */
+typedef struct pmesh_base_source {
+    pmesh_base_decode decode;
+    void *user;
+    const uint8_t *data;
+    size_t size;
+} pmesh_base_source;
+
+/* The same from a hook, whose answer is not trusted. On a negative status the
+ * mesh is empty again. */
+pmesh_status pmesh_base_import(pmesh_codec *c, const pmesh_base_source *source,
+                               uint32_t vertices, uint32_t faces);
+
+/* Behind either: codes materials, wedges and their values; `wedges` as the
+ * header says (when encoding, an upper bound). */
+pmesh_status pmesh_base_attributes_code(pmesh_codec *c, pmesh_coder *coder,
+                                        const pmesh_oracle *oracle,
+                                        uint32_t wedges);
 
 /* Starts a level on the current mesh. */
 void pmesh_level_begin(pmesh_codec *c);

@@ -3,8 +3,6 @@
 
 #include "format/quantize.h"
 
-enum { PLACEMENT_SHIFT = 2, PROFILE_MASK = 3 };
-
 uint64_t pmesh_hash_crc(uint64_t hash, uint32_t crc)
 {
     for (int i = 0; i < 4; i++)
@@ -29,7 +27,11 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h)
     const pmesh_codec_sizes *s = &h->sizes;
     pmesh_put(out, PMESH_FORMAT_VERSION, 1);
     pmesh_put(out, h->content_hash, 8);
-    pmesh_put(out, h->profile | (unsigned)s->moves << PLACEMENT_SHIFT, 1);
+    pmesh_put(out,
+              h->profile | (s->moves ? PMESH_MODES_MOVES : 0) |
+                  (h->base_coder == PMESH_BASE_DRACO ? PMESH_MODES_DRACO_BASE
+                                                     : 0),
+              1);
     pmesh_put(out, h->grid.bits, 1);
     for (int k = 0; k < 3; k++)
         pmesh_put_f64(out, h->grid.origin[k]);
@@ -165,11 +167,13 @@ static const char *read_levels(pmesh_cursor *in, pmesh_header_chunk *h)
 static const char *read_frame(pmesh_cursor *in, pmesh_header_chunk *h)
 {
     const uint8_t modes = pmesh_get_u8(in);
-    if (modes >> (PLACEMENT_SHIFT + 1) ||
-        (modes & PROFILE_MASK) > PMESH_QUALITY)
-        return "SPEC 5.3: an unknown profile or placement";
-    h->profile = (pmesh_profile)(modes & PROFILE_MASK);
-    h->sizes.moves = modes >> PLACEMENT_SHIFT & 1;
+    if (modes > PMESH_MODES_ALL ||
+        (modes & PMESH_MODES_PROFILE) > PMESH_QUALITY)
+        return "SPEC 5.3: an unknown mode";
+    h->profile = (pmesh_profile)(modes & PMESH_MODES_PROFILE);
+    h->sizes.moves = modes & PMESH_MODES_MOVES;
+    h->base_coder = modes & PMESH_MODES_DRACO_BASE ? PMESH_BASE_DRACO
+                                                   : PMESH_BASE_NATIVE;
     h->grid.bits = pmesh_get_u8(in);
     if (h->grid.bits < 4 || h->grid.bits > 24)
         return "SPEC 5.3: position bits are 4 to 24";

@@ -18,6 +18,7 @@ typedef struct pmesh_level_entry {
 typedef struct pmesh_header_chunk {
     uint64_t content_hash;
     pmesh_profile profile;
+    pmesh_base_coder base_coder;
     pmesh_grid grid;
     int32_t bounds[3];
     pmesh_codec_sizes sizes;

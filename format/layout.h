@@ -26,6 +26,12 @@
 #define PMESH_CHUNK_SKIPPABLE 0x80
 #define PMESH_CRC_SIZE 4
 
+/* 5.3 Header: the bits of `modes`. */
+#define PMESH_MODES_PROFILE 3u     /* mask */
+#define PMESH_MODES_MOVES 4u       /* parents move */
+#define PMESH_MODES_DRACO_BASE 8u  /* the base mesh is a Draco buffer */
+#define PMESH_MODES_ALL 15u
+
 #define PMESH_MAX_HEADER_SIZE 4096
 #define PMESH_MAX_CHUNK_SIZE (1u << 28)
 #define PMESH_MAX_NAMES_SIZE (1u << 20)

@@ -49,6 +49,7 @@ typedef enum pmesh_status {
     PMESH_E_VERSION = -11,   /* a format version or critical chunk we lack */
     PMESH_E_CORRUPT = -12,   /* the stream breaks a MUST of SPEC.md */
     PMESH_E_CHECKSUM = -13,  /* a chunk's CRC-32C does not match */
+    PMESH_E_UNSUPPORTED = -14, /* the file needs a hook that the config lacks */
     PMESH_E_NO_FACES = -20,  /* the input mesh has no usable triangle */
     PMESH_E_INDEX = -21,     /* an input index is out of range */
     PMESH_E_NOT_FINITE = -22 /* an input position in use is NaN or infinite */
@@ -127,6 +128,28 @@ typedef enum pmesh_placement {
     PMESH_SUBSET = 0, /* every level's vertices are vertices of the input */
     PMESH_OPTIMAL = 1 /* vertices move to where the error is least */
 } pmesh_placement;
+
+/* Who codes the shape of the base mesh. Attributes are coded by ourselves in
+ * both cases. */
+typedef enum pmesh_base_coder {
+    PMESH_BASE_NATIVE = 0, /* default: the libraries do */
+    PMESH_BASE_DRACO = 1   /* Draco, which encoder and decoder reach by hooks */
+} pmesh_base_coder;
+
+/*
+ * Hook: decodes a Draco buffer that holds a base mesh. Fills 3 coordinates in
+ * `positions` for each of `vertex_count` points and 3 point numbers in
+ * `indices` for each of `face_count` faces, in Draco's order of both. The
+ * bytes come from a file and are hostile; the answer is checked, too.
+ *
+ * Returns PMESH_OK, or PMESH_E_MEMORY; any other status says that the bytes
+ * are no such mesh.
+ */
+typedef pmesh_status (*pmesh_base_decode)(void *user, const void *data,
+                                          size_t size, uint32_t vertex_count,
+                                          uint32_t face_count,
+                                          int32_t *positions,
+                                          uint32_t *indices);
 
 #ifdef __cplusplus
 }

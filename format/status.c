@@ -15,6 +15,7 @@ const char *pmesh_status_text(pmesh_status status)
     case PMESH_E_VERSION: return "a newer or unknown format version";
     case PMESH_E_CORRUPT: return "the stream is damaged";
     case PMESH_E_CHECKSUM: return "a checksum does not match";
+    case PMESH_E_UNSUPPORTED: return "the file needs a hook that is not there";
     case PMESH_E_NO_FACES: return "the mesh has no usable triangle";
     case PMESH_E_INDEX: return "a face index is out of range";
     case PMESH_E_NOT_FINITE: return "a position in use is not finite";

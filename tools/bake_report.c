@@ -59,8 +59,9 @@ void bake_report_print(const bake_report *r, FILE *out, bool verbose)
             e->faces, e->vertices, e->bytes, bits_per_vertex(e));
     fprintf(out,
             "  %" PRIu32 " levels from a base mesh of %" PRIu32
-            " faces, %" PRIu32 " vertices\n",
-            e->level_count, e->base_faces, e->base_vertices);
+            " faces, %" PRIu32 " vertices%s\n",
+            e->level_count, e->base_faces, e->base_vertices,
+            e->base_coder == PMESH_BASE_DRACO ? ", by Draco" : "");
     fprintf(out,
             "  %.2f s: reading %.2f, import %.2f, contraction %.2f, "
             "coding %.2f\n",
@@ -83,6 +84,7 @@ static void json_counts(json *j, const pmesh_encode_report *e)
     json_count(j, "bytes", e->bytes);
     json_number(j, "bits_per_vertex",
                 floor(bits_per_vertex(e) * 1e4 + 0.5) / 1e4);
+    json_text(j, "base_coder", levels_base_name(e->base_coder));
     json_count(j, "base_faces", e->base_faces);
     json_count(j, "base_vertices", e->base_vertices);
     json_count(j, "components", e->components);

@@ -11,6 +11,7 @@
 #include "tools/args.h"
 #include "tools/bake_report.h"
 #include "tools/cmd.h"
+#include "tools/draco_base.h"
 #include "tools/file.h"
 #include "tools/load.h"
 #include "tools/progress.h"
@@ -55,6 +56,9 @@ static const args_option option_table[] = {
     { .name = "base-faces", .kind = ARGS_COUNT, .value = "N", .min = 1,
       .max = 1 << 28, AT(base_faces),
       .help = "size of the coarsest level; default about 200" },
+    { .name = "base", .kind = ARGS_CHOICE, .value = "native|draco", AT(base),
+      .help = "who codes it; default native, draco is smaller\n"
+              "from about 10000 faces on" },
     { .name = "max-error", .kind = ARGS_NUMBER, .value = "E", .min = 0,
       .max = DBL_MAX, AT(max_error),
       .help = "no level is further than E from the full mesh\n"
@@ -86,8 +90,6 @@ static const args_option option_table[] = {
       .help = "no report, no warnings, no progress" },
     { .name = "verbose", .letter = 'v', .kind = ARGS_FLAG, AT(verbose),
       .help = "report the parts of the file and its levels" },
-    { .name = "base", .kind = ARGS_CHOICE, .value = "native|draco",
-      AT(base) }, /* not listed: only one of them works yet */
 };
 
 static const args_command command = {
@@ -123,8 +125,6 @@ static int check_options(const options *o, int operand_count)
                                    "version");
     if (!o->output)
         return usage("no output is named (-o OUT.pmesh)");
-    if (o->base != 0)
-        return usage("--base draco is not in this version");
     if (o->json && strcmp(o->output, "-") == 0)
         return usage("--json and -o - both need standard output");
     switch (asset_format_of(o->output)) {
@@ -150,6 +150,9 @@ static void configure(const options *o, pmesh_encoder_config *config)
     config->color_bits = (uint8_t)o->color_bits;
     config->base_faces = o->base_faces;
     config->base_error = o->max_error;
+    config->base_coder = (pmesh_base_coder)o->base;
+    config->base_encoder = draco_base_encode;
+    config->base_decoder = draco_base_decode;
     config->weld = o->weld;
     config->threshold = o->threshold;
     config->threads = o->threads;
@@ -264,6 +267,9 @@ static int bake(const options *o, const file_data *data, bake_report *report)
                                     "codes contractions along edges only");
     code = encode(o, file_input_name(report->input), &mesh, report, &bytes);
     asset_free(&mesh);
+    if (code == CMD_DONE && (int)report->encode.base_coder != o->base)
+        report_note(&report->notes, "Draco cannot hold this base mesh, which "
+                                    "is coded natively instead");
     if (code == CMD_DONE) {
         const double written = progress_clock();
         if (!file_write(o->output, bytes.data, bytes.size, &error)) {

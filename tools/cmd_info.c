@@ -95,8 +95,9 @@ static void print_text(const char *path, const stream *s, uint64_t size,
     printf("\nfull detail  %" PRIu32 " faces, %" PRIu32 " vertices, %" PRIu32
            " output vertices\n",
            h->faces, h->mesh_vertices, h->vertices);
-    printf("base mesh    %" PRIu32 " faces, %" PRIu32 " vertices\n",
-           h->base_faces, h->base_mesh_vertices);
+    printf("base mesh    %" PRIu32 " faces, %" PRIu32 " vertices, %s coder\n",
+           h->base_faces, h->base_mesh_vertices,
+           levels_base_name(h->base_coder));
     printf("levels       %" PRIu32 ", %s profile, %s placement\n",
            h->level_count, levels_profile_name(h->profile),
            levels_placement_name(h->placement));
@@ -166,6 +167,7 @@ static void print_json(const char *path, const stream *s, uint64_t size)
     json_count(&j, "faces", h->faces);
     json_count(&j, "vertices", h->mesh_vertices);
     json_count(&j, "output_vertices", h->vertices);
+    json_text(&j, "base_coder", levels_base_name(h->base_coder));
     json_count(&j, "base_faces", h->base_faces);
     json_count(&j, "base_vertices", h->base_mesh_vertices);
     json_count(&j, "base_output_vertices", h->base_vertices);

@@ -54,3 +54,8 @@ const char *levels_placement_name(pmesh_placement placement)
     }
     return "unknown";
 }
+
+const char *levels_base_name(pmesh_base_coder coder)
+{
+    return coder == PMESH_BASE_DRACO ? "draco" : "native";
+}

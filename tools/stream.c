@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tools/cmd.h"
+#include "tools/draco_base.h"
 
 /* A face costs the decoder some 100 bytes and the file at least 1/20 byte
  * where the surface is flat; a small file may still need the least. */
@@ -56,6 +57,7 @@ static bool start(const file_data *data, stream *out, asset_error *error)
     pmesh_decoder_config config = pmesh_decoder_config_default();
 
     config.max_memory = memory_bound(data->size);
+    config.base_decoder = draco_base_decode;
     *out = (stream){ 0 };
     const pmesh_status status = pmesh_decoder_create(&out->decoder, &config);
     if (status != PMESH_OK)

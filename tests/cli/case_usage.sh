@@ -56,7 +56,7 @@ check 'bake with two inputs' 2 bake "$torus" "$torus" -o a.pmesh
 check 'bake with -i and an operand' 2 bake "$torus" -i "$torus" -o a.pmesh
 check 'bake into glTF' 2 bake "$torus" -o a.glb
 check 'bake into OBJ' 2 bake "$torus" -o a.obj
-check 'bake --base draco' 2 bake "$torus" -o a.pmesh --base draco
+check 'bake --base of another' 2 bake "$torus" -o a.pmesh --base zip
 check 'bake --json and -o -' 2 bake "$torus" -o - --json
 check 'extract without file' 2 extract -o a.obj
 check 'extract without output' 2 extract "$baked"
