@@ -40,6 +40,27 @@ for option in '--profile compact' '--profile quality' '--placement optimal' \
     check "verify after $option" 0 verify -q o.pmesh
 done
 
+check 'bake --base draco' 0 bake "$torus" -o d.pmesh --base draco \
+    --base-faces 500 --json
+ok 'the report names the base coder' test "$(json base_coder)" = draco
+check 'verify a Draco base' 0 verify d.pmesh
+check 'info of a Draco base' 0 info d.pmesh
+ok 'info names the base coder' out '^base mesh .* draco coder$'
+check 'info --json of a Draco base' 0 info d.pmesh --json
+ok 'info --json names it, too' test "$(json base_coder)" = draco
+check 'extract from a Draco base' 0 extract -q d.pmesh -o d.obj
+ok 'all faces are there' test "$(faces d.obj)" = 4608
+check 'extract the base' 0 extract -q d.pmesh --faces 500 -o d.obj
+ok 'it has the size' test "$(faces d.obj)" = 500
+check 'compare with a Draco base' 0 compare d.pmesh a.pmesh --fail-above 0
+check 'sheet of a Draco base' 0 sheet d.pmesh -o d.png --size 120
+check 'bake a Draco base again' 0 bake d.pmesh -o again.pmesh -q
+cp d.pmesh bad.pmesh
+flip bad.pmesh $(($(size d.pmesh) / 20))
+check 'a damaged Draco base' 4 verify bad.pmesh
+head -c $(($(size d.pmesh) / 20)) d.pmesh >bad.pmesh
+check 'a Draco base that is cut off' 4 extract bad.pmesh -o bad.obj
+
 tetra='v 0 0 0
 v 1 0 0
 v 0 1 0

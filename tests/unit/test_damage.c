@@ -8,9 +8,11 @@
 #include "format/layout.h"
 #include "tests/unit/shapes.h"
 #include "tests/unit/test.h"
+#include "tools/draco_base.h"
 
-static shape_bytes bake(shape_kind kind, uint32_t size,
-                        pmesh_placement placement)
+static shape_bytes bake_base(shape_kind kind, uint32_t size,
+                             pmesh_placement placement,
+                             pmesh_base_coder coder)
 {
     shape_mesh *s = shape_make(kind, size, 7);
     pmesh_encoder_config config = pmesh_encoder_config_default();
@@ -19,10 +21,19 @@ static shape_bytes bake(shape_kind kind, uint32_t size,
     config.position_bits = 10;
     config.base_faces = 12;
     config.placement = placement;
+    config.base_coder = coder;
+    config.base_encoder = draco_base_encode;
+    config.base_decoder = draco_base_decode;
     const pmesh_status status = shape_bake(s, &config, &bytes, &report);
     shape_free(s);
     CHECK(status == PMESH_OK);
     return bytes;
+}
+
+static shape_bytes bake(shape_kind kind, uint32_t size,
+                        pmesh_placement placement)
+{
+    return bake_base(kind, size, placement, PMESH_BASE_NATIVE);
 }
 
 TEST(every_flipped_bit_is_noticed)
@@ -76,6 +87,7 @@ static void damage_and_decode(const shape_bytes *b, uint32_t *seed)
     pmesh_decoder_config config = pmesh_decoder_config_default();
     pmesh_decoder *dec;
     config.max_memory = (uint64_t)64 << 20;
+    config.base_decoder = draco_base_decode;
     CHECK(pmesh_decoder_create(&dec, &config) == PMESH_OK);
     status = pmesh_decoder_feed(dec, copy, b->size);
     (void)status; /* a valid stream of another mesh is a possible outcome */
@@ -104,6 +116,55 @@ TEST(damage_behind_forged_checksums_does_no_harm)
                 damage_and_decode(&b, &seed);
             free(b.data);
         }
+}
+
+/* Half of the damage hits the Draco buffer. */
+TEST(damage_to_a_draco_base_does_no_harm)
+{
+    for (int kind = 0; kind < SHAPE_COUNT; kind++) {
+        shape_bytes b = bake_base((shape_kind)kind,
+                                  kind == SHAPE_SOUP ? 30 : 6, PMESH_SUBSET,
+                                  PMESH_BASE_DRACO);
+        uint32_t seed = 31 + (uint32_t)kind;
+        for (int i = 0; i < 400; i++)
+            damage_and_decode(&b, &seed);
+        free(b.data);
+    }
+}
+
+/* Where the payload of the first chunk of that type begins. */
+static size_t payload_of(const shape_bytes *b, uint8_t type)
+{
+    size_t at = PMESH_SIGNATURE_SIZE;
+    for (;;) {
+        pmesh_cursor in = pmesh_cursor_make(b->data + at, b->size - at);
+        const uint8_t found = pmesh_get_u8(&in);
+        const size_t size = (size_t)pmesh_get_varint(&in);
+        CHECK(!in.overrun);
+        at = (size_t)(in.next - b->data);
+        if (found == type)
+            return at;
+        at += size + PMESH_CRC_SIZE;
+    }
+}
+
+TEST(a_draco_buffer_larger_than_its_chunk_is_refused)
+{
+    static const uint8_t sizes[][2] = { { 0xff, 0x7f }, { 0x80, 0x00 } };
+    for (int i = 0; i < 2; i++) {
+        shape_bytes b = bake_base(SHAPE_TORUS, 12, PMESH_SUBSET,
+                                  PMESH_BASE_DRACO);
+        memcpy(b.data + payload_of(&b, PMESH_CHUNK_BASE), sizes[i], 2);
+        forge_checksums(b.data, b.size);
+        pmesh_decoder_config config = pmesh_decoder_config_default();
+        pmesh_decoder *dec;
+        config.base_decoder = draco_base_decode;
+        CHECK(pmesh_decoder_create(&dec, &config) == PMESH_OK);
+        CHECK(pmesh_decoder_feed(dec, b.data, b.size) == PMESH_E_CORRUPT);
+        CHECK(strstr(pmesh_decoder_error(dec).rule, "larger than its chunk"));
+        pmesh_decoder_destroy(dec);
+        free(b.data);
+    }
 }
 
 TEST(bytes_behind_the_end_are_ignored)
