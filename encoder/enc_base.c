@@ -129,7 +129,7 @@ static pmesh_status code_natively(enc_replay *r, const base_mesh *b,
                            r->base_faces);
 }
 
-/* Half-edges of the codec's mesh, which came from the hook, and its vertices. */
+/* The maps of a codec's mesh that came from the hook. */
 static pmesh_status find_maps(enc_replay *r, const base_mesh *b, bool *same)
 {
     const pmesh_mesh *m = &r->codec.mesh;

@@ -18,7 +18,8 @@
  * in pieces. No face is lost at full detail except those the report counts.
  *
  * The same input and config give the same bytes on every machine, whatever
- * `threads` is, as far as hooks do. The bytes may differ between versions of this library.
+ * `threads` is, as far as hooks do. The bytes may differ between versions of
+ * this library.
  */
 #ifndef PMESH_ENCODE_H
 #define PMESH_ENCODE_H
@@ -103,7 +104,7 @@ typedef struct pmesh_encoder_config {
     double base_error;         /* ... or when the next contraction would exceed
                                   this distance, model units; 0: no such stop */
     pmesh_base_coder base_coder; /* default PMESH_BASE_NATIVE; Draco needs both
-                                    hooks, and is smaller from about 10,000
+                                    hooks; often smaller from some 10,000 base
                                     faces on. A base that it cannot hold is
                                     coded natively: see the report */
     pmesh_base_encode base_encoder;

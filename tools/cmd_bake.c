@@ -57,8 +57,8 @@ static const args_option option_table[] = {
       .max = 1 << 28, AT(base_faces),
       .help = "size of the coarsest level; default about 200" },
     { .name = "base", .kind = ARGS_CHOICE, .value = "native|draco", AT(base),
-      .help = "who codes it; default native, draco is smaller\n"
-              "from about 10000 faces on" },
+      .help = "who codes it: native (default), or draco, often\n"
+              "smaller from about 10000 base faces on" },
     { .name = "max-error", .kind = ARGS_NUMBER, .value = "E", .min = 0,
       .max = DBL_MAX, AT(max_error),
       .help = "no level is further than E from the full mesh\n"
