@@ -14,7 +14,7 @@ soname := libpmesh.so.0
 version := $(shell awk '/define PMESH_VERSION_/ { printf "%s%s", dot, $$3; \
   dot = "." }' format/pmesh.h)
 
-opt_release := -O2 -DNDEBUG
+opt_release := -O3 -DNDEBUG
 opt_debug := -O0 -g
 opt_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
 ifndef opt_$(config)
@@ -38,7 +38,8 @@ obj = $(patsubst %,$(B)/%.o,$(basename $(1)))
 dec_obj := $(call obj,$(wildcard format/*.c decoder/*.c))
 lib_obj := $(dec_obj) $(call obj,$(wildcard encoder/*.c))
 tool_obj := $(call obj,$(wildcard tools/*.c tools/*.cpp))
-unit_obj := $(call obj,$(units)) $(filter-out $(B)/tools/pmesh.o,$(tool_obj))
+shared_obj := $(filter-out $(B)/tools/pmesh.o,$(tool_obj))
+unit_obj := $(call obj,$(units)) $(shared_obj)
 libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
 
 ## all: libraries and program (default)
@@ -49,7 +50,8 @@ $(B)/libpmesh-dec.a: $(dec_obj)
 $(B)/libpmesh.so: $(lib_obj)
 $(B)/pmesh: $(tool_obj) $(B)/libpmesh.a
 $(B)/unit: $(unit_obj) $(B)/libpmesh.a
-$(libs) $(B)/pmesh $(B)/unit: $(B)/objects.list
+$(B)/train: $(B)/tests/train/train.o $(shared_obj) $(B)/libpmesh.a
+$(libs) $(B)/pmesh $(B)/unit $(B)/train: $(B)/objects.list
 
 inputs = $(filter %.o %.a,$^)
 quiet = $(if $(V),,@echo '  $@' && )
@@ -57,7 +59,7 @@ $(B)/%.a:
 	$(quiet)rm -f $@ && $(AR) rcs $@ $(inputs)
 $(B)/%.so:
 	$(quiet)$(CC) -shared -Wl,-soname,$(soname) $(inputs) $(link_flags) -lm -o $@
-$(B)/pmesh $(B)/unit:
+$(B)/pmesh $(B)/unit $(B)/train:
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
 
 $(B)/%.o: %.c $(B)/c.flags
@@ -104,6 +106,10 @@ check:
 ## unit: only the unit tests; T=name selects some
 unit: $(B)/unit
 	$< $(T)
+
+## train: make the codec's starting tables anew from TRAIN_ON="a.obj b.obj"
+train: $(B)/train
+	TRAIN=$< tests/train/train.sh $(TRAIN_ON)
 
 ## check-deps: every #include follows the architecture
 check-deps:

@@ -251,14 +251,25 @@ static pmesh_status code_connectivity(base *b)
     return status;
 }
 
+static void add_neighbour(pmesh_codec *c, uint32_t v, uint32_t x)
+{
+    c->degree[v]++;
+    for (int k = 0; k < 3; k++)
+        c->around[v][k] += (uint32_t)c->mesh.position[x][k];
+}
+
 /* Neighbours: one per face, and one more at a boundary. */
-static void count_degrees(pmesh_codec *c)
+static void count_neighbours(pmesh_codec *c)
 {
     const pmesh_mesh *m = &c->mesh;
-    for (uint32_t v = 0; v < m->vertex_count; v++)
-        c->degree[v] = m->twin[m->first[v]] == PMESH_NONE;
-    for (uint32_t h = 0; h < 3 * m->face_count; h++)
-        c->degree[m->vertex[h]]++;
+    memset(c->degree, 0, m->vertex_count * sizeof *c->degree);
+    memset(c->around, 0, m->vertex_count * sizeof *c->around);
+    for (uint32_t h = 0; h < 3 * m->face_count; h++) {
+        const uint32_t v = m->vertex[h], x = m->vertex[pmesh_next(h)];
+        add_neighbour(c, v, x);
+        if (m->twin[h] == PMESH_NONE)
+            add_neighbour(c, x, v);
+    }
 }
 
 /* At a boundary first[] is the half-edge without a twin. */
@@ -270,7 +281,7 @@ static pmesh_status settle(base *b)
             m->first[m->vertex[h]] = h;
     if (pmesh_mesh_check(m, (uint8_t *)b->table))
         return corrupt(b, "SPEC 6.2: the base mesh is not a manifold");
-    count_degrees(b->c);
+    count_neighbours(b->c);
     return PMESH_OK;
 }
 

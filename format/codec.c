@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "format/codec.h"
+#include "format/cut.h"
 #include "format/quantize.h"
 #include "format/rank.h"
 
@@ -54,6 +55,7 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     c->order = carve(&k, s->vertices, sizeof *c->order);
     c->state = carve(&k, s->vertices, sizeof *c->state);
     c->degree = carve(&k, s->vertices, sizeof *c->degree);
+    c->around = carve(&k, s->vertices, sizeof *c->around);
     c->face_end = carve(&k, s->vertices, sizeof *c->face_end);
     c->wedge_end = NULL;
     c->wedge_corner = c->wedge_order = NULL;
@@ -71,10 +73,11 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     c->face_order = carve(&k, 2 * (uint64_t)s->block_splits,
                           sizeof *c->face_order);
     c->scratch = carve(&k, pmesh_rank_scratch(s), sizeof *c->scratch);
+    c->cut_room = carve(&k, 1, pmesh_cut_room());
     c->base_scratch = carve(&k, pmesh_base_scratch(s->base_faces),
                             sizeof *c->base_scratch);
     if (block)
-        pmesh_models_init(&c->models);
+        pmesh_models_init(&c->models, &pmesh_start);
     return k.used;
 }
 

@@ -89,8 +89,12 @@ typedef struct pmesh_codec {
     /* Of the level. */
     uint32_t *order;  /* per vertex: the visit's order */
     uint8_t *state;   /* per vertex: pmesh_visit */
-    uint32_t *degree; /* per vertex: neighbours */
     uint32_t level_vertex_count, level_next;
+
+    /* Of the mesh as it is. */
+    uint32_t *degree;      /* per vertex: neighbours */
+    uint32_t (*around)[3]; /* per vertex: sum of its neighbours' positions,
+                              modulo 2^32 */
 
     /* Of the vertex tree: what there is once a vertex is split off. */
     uint32_t *face_end;  /* per vertex */
@@ -109,6 +113,7 @@ typedef struct pmesh_codec {
     uint32_t *wedge_order;  /* per wedge of the block, likewise */
     uint32_t *wedge_corner; /* per wedge: the half-edge it was made for */
     uint32_t *scratch;      /* see rank.c */
+    void *cut_room;         /* see cut.c */
     uint32_t *base_scratch; /* pmesh_base_scratch() numbers, for the base */
 } pmesh_codec;
 

@@ -2,8 +2,21 @@
 #include "format/coder.h"
 
 #define PROBABILITY_BITS 16
-#define FAST_USES 20  /* the estimates become exponential averages with */
-#define SLOW_USES 160 /* these lengths; before, they are plain averages */
+#define FAST_USES 30  /* the estimates become exponential averages with */
+#define PRIOR_USES 12 /* a probability from a table counts as many bits */
+#define SLOW_USES 127 /* these lengths; before, they are plain averages */
+
+/* 2 / (2 uses + 3) in 1/32768: the step of an average towards a new value. */
+#define RATE_BITS 15
+#define R(n) (65536 / (2 * (n) + 3))
+#define R4(n) R(n), R((n) + 1), R((n) + 2), R((n) + 3)
+#define R32(n) \
+    R4(n), R4((n) + 4), R4((n) + 8), R4((n) + 12), R4((n) + 16), \
+        R4((n) + 20), R4((n) + 24), R4((n) + 28)
+
+static const uint16_t rate[SLOW_USES + 1] = {
+    R32(0), R32(32), R32(64), R32(96),
+};
 
 /* Keeps a bit's cost below about 11 bits and above 1/1400. */
 #define PROBABILITY_MIN 32u
@@ -13,6 +26,16 @@ void pmesh_bits_init(pmesh_bit *bits, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         bits[i] = (pmesh_bit)PMESH_BIT_INIT;
+}
+
+void pmesh_bits_start(pmesh_bit *bits, size_t count, const uint8_t *table)
+{
+    pmesh_bits_init(bits, count);
+    for (size_t i = 0; i < count; i++)
+        if (table[i]) {
+            bits[i].fast = bits[i].slow = (uint16_t)(table[i] * 256 + 128);
+            bits[i].uses = PRIOR_USES;
+        }
 }
 
 void pmesh_coder_encode(pmesh_coder *c, pmesh_writer *out)
@@ -73,18 +96,18 @@ bool pmesh_coder_finish(pmesh_coder *c)
 
 static void adapt(pmesh_bit *m, unsigned bit)
 {
-    const int target = bit ? 0 : 65535;
-    const int uses = m->uses;
-    const int fast = uses < FAST_USES ? uses : FAST_USES;
-    m->fast = (uint16_t)(m->fast + (target - m->fast) * 2 / (2 * fast + 3));
-    m->slow = (uint16_t)(m->slow + (target - m->slow) * 2 / (2 * uses + 3));
-    if (uses < SLOW_USES)
+    const int32_t target = bit ? 0 : 65535;
+    const int32_t fast = rate[m->uses < FAST_USES ? m->uses : FAST_USES];
+    m->fast = (uint16_t)(m->fast + ((target - m->fast) * fast >> RATE_BITS));
+    m->slow = (uint16_t)(m->slow +
+                         ((target - m->slow) * rate[m->uses] >> RATE_BITS));
+    if (m->uses < SLOW_USES)
         m->uses++;
 }
 
-unsigned pmesh_code_bit(pmesh_coder *c, pmesh_bit *m, unsigned bit)
+/* One bit that is 0 with probability p / 65536. */
+static inline unsigned code(pmesh_coder *c, uint32_t p, unsigned bit)
 {
-    uint32_t p = ((uint32_t)m->fast + m->slow) / 2;
     p = p < PROBABILITY_MIN ? PROBABILITY_MIN
                             : p > PROBABILITY_MAX ? PROBABILITY_MAX : p;
     const uint32_t bound = (c->range >> PROBABILITY_BITS) * p;
@@ -100,8 +123,23 @@ unsigned pmesh_code_bit(pmesh_coder *c, pmesh_bit *m, unsigned bit)
     } else {
         c->range = bound;
     }
-    adapt(m, bit);
     pmesh_coder_normalize(c);
+    return bit;
+}
+
+unsigned pmesh_code_bit(pmesh_coder *c, pmesh_bit *m, unsigned bit)
+{
+    bit = code(c, ((uint32_t)m->fast + m->slow) / 2, bit);
+    adapt(m, bit);
+    return bit;
+}
+
+unsigned pmesh_code_bit_twice(pmesh_coder *c, pmesh_bit *m, pmesh_bit *n,
+                              unsigned bit)
+{
+    bit = code(c, ((uint32_t)m->fast + m->slow + n->fast + n->slow) / 4, bit);
+    adapt(m, bit);
+    adapt(n, bit);
     return bit;
 }
 

@@ -39,6 +39,10 @@ typedef struct pmesh_bit {
 
 void pmesh_bits_init(pmesh_bit *bits, size_t count);
 
+/* Starts from probabilities of a 0 in 1/256, as if each had been seen a few
+ * times; even odds, never seen, where the table holds 0. */
+void pmesh_bits_start(pmesh_bit *bits, size_t count, const uint8_t *table);
+
 void pmesh_coder_encode(pmesh_coder *c, pmesh_writer *out);
 void pmesh_coder_decode(pmesh_coder *c, const uint8_t *data, size_t size);
 
@@ -63,6 +67,10 @@ static inline void pmesh_coder_normalize(pmesh_coder *c)
 
 /* One adaptive bit. */
 unsigned pmesh_code_bit(pmesh_coder *c, pmesh_bit *m, unsigned bit);
+
+/* The same with the mean of two models, which both learn. */
+unsigned pmesh_code_bit_twice(pmesh_coder *c, pmesh_bit *m, pmesh_bit *n,
+                              unsigned bit);
 
 /* `count` <= 32 bits of even odds, the most significant first. */
 uint32_t pmesh_code_raw(pmesh_coder *c, unsigned count, uint32_t value);

@@ -1,108 +1,124 @@
 /* SPDX-License-Identifier: MIT */
 #include "format/cut.h"
 
+#include "format/star.h"
+
 enum {
-    MAX_CUTS = PMESH_MAX_RING * (PMESH_MAX_RING - 1),
+    LANES = 8, /* options are weighed so many at a time, for SIMD's sake */
+    MAX_OPTIONS = PMESH_MAX_RING * (PMESH_MAX_RING + 1), /* in full rows */
     GHOST = 255,     /* as a wing */
-    SHAPE_BITS = 12, /* coordinates are scaled to this magnitude */
-    TERMS = 5,
-    WEIGHT_ONE = 256, /* weights have 1/4096 bit, costs 1/16 bit */
+    SUM_BITS = 13,   /* of the largest coordinate times the ring's size */
+    SHARE_BITS = 15, /* of 1 / members */
+    LEAST_SIZE = 1 << 15,
+    TERMS = PMESH_CUT_TERMS,
+    TERM_LIMIT = INT16_MAX, /* terms have 1/256 of the ring's size, squared */
+    WEIGHT_BITS = 8,  /* weights have 1/4096 bit, costs 1/16 bit */
     SHARE_ONE = 4096,
-    LEAST_ERROR = 16,   /* of a share: less is not worth learning */
-    LEARN_PLACE = 8,    /* error / this changes a weight of a place, */
-    LEARN_SHAPE = 1024, /* error x term / this one of the shape */
-    LARGEST_WEIGHT = 1 << 24,
+    LEAST_ERROR = 4,    /* of a share: less is not worth learning */
+    LEARN_PLACE = 1,    /* error / this changes a weight of a place, */
+    LEARN_SHAPE = 512,   /* error x term / this one of the shape */
+    LARGEST_PLACE = 1 << 26,
+    LARGEST_SHAPE = 1 << 17, /* so that the sum of all terms fits 32 bits */
     TAKEN = INT32_MAX
 };
 
-/* Terms have 1/256 of the ring's size: x 2^40 / size / 2^32. */
-#define SIZE_ONE ((int64_t)1 << 40)
-#define TERM_ONE ((int64_t)1 << 32)
-
-/* The ring in coordinates relative to v and scaled so that the largest lies in
- * 2^12 .. 2^13: then every sum below stays under 2^46 (SPEC appendix A). */
+/* The ring relative to v, in coordinates scaled such that every sum of them
+ * stays below 2^13: all that follows fits 32 bits (SPEC appendix A). The
+ * members of a closed ring come twice, those of an open one are followed by
+ * zeros; a row of lanes may read beyond what counts. */
+enum { MEMBERS = 2 * PMESH_MAX_RING + LANES };
 typedef struct shape {
     uint32_t count;
     bool open;
-    int32_t x[PMESH_MAX_RING][3];
-    int64_t sum[2 * PMESH_MAX_RING + 1][3]; /* of the first members, twice
-                                               round if closed */
-    int64_t square[2 * PMESH_MAX_RING + 1];
-    int64_t per_size;    /* SIZE_ONE / mean square distance from v */
-    int64_t drift[3];    /* mean displacement of newborn members ... */
+    int32_t x[3][MEMBERS];
+    int32_t sum[3][MEMBERS + 1]; /* of the members before */
+    int32_t square[MEMBERS + 1];
+    int32_t per_size; /* 2^27 / mean square distance from v, <= 2^12 */
+    int32_t drift[3];    /* mean displacement of newborn members ... */
     int32_t drift_count; /* ... if there are any */
     pmesh_cut_weights *weights;
-    int32_t *degree[PMESH_MAX_RING];   /* weights of a member as a wing: its */
-    int32_t *state[2][PMESH_MAX_RING]; /* degree, the states around wing a, b */
+    /* Weights of a member as wing a, b: of its degree, of the states around;
+     * and the sum of both. */
+    int32_t *degree[2][PMESH_MAX_RING], *state[2][PMESH_MAX_RING];
+    int32_t wing[2][MEMBERS];
 } shape;
 
-static int64_t dot(const int64_t a[3], const int64_t b[3])
+/* The ways to cut, by the wings' ring positions, in rows of lanes; lanes
+ * without an option are TAKEN from the start. */
+typedef struct options {
+    uint32_t count; /* a multiple of LANES */
+    uint8_t a[MAX_OPTIONS], b[MAX_OPTIONS];
+    int32_t cost[MAX_OPTIONS]; /* 1/16 bit, up to a constant */
+    uint32_t share[MAX_OPTIONS];
+    int16_t term[MAX_OPTIONS / LANES][TERMS][LANES];
+} options;
+
+uint64_t pmesh_cut_room(void)
 {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return sizeof(options);
 }
 
-static unsigned bit_length(uint32_t value)
-{
-    unsigned n = 0;
-    for (; value; value >>= 1)
-        n++;
-    return n;
-}
+/* 2^15 / n; members of a ring, v itself, and two wings more. */
+#define R(n) ((1 << SHARE_BITS) / (n))
+#define R4(n) R(n), R((n) + 1), R((n) + 2), R((n) + 3)
+static const int16_t share_of[] = {
+    0,      R(2) * 2 - 1, R(2),   R(3),   R4(4),  R4(8),  R4(12), R4(16),
+    R4(20), R4(24),       R4(28), R4(32), R4(36), R4(40), R4(44), R4(48),
+};
 
-static int32_t scaled(int32_t value, int shift)
-{
-    return shift >= 0 ? value * (1 << shift) : value / (1 << -shift);
-}
+/* ---- the ring ----------------------------------------------------------- */
 
 static void shape_points(shape *s, const pmesh_codec *c, uint32_t v,
                          const pmesh_ring *ring)
 {
     const int32_t *at = c->mesh.position[v];
+    const uint32_t n = ring->count;
     uint32_t largest = 0;
-    for (uint32_t i = 0; i < ring->count; i++) {
+    for (uint32_t i = 0; i < n; i++)
         for (int k = 0; k < 3; k++) {
             const int32_t d = c->mesh.position[ring->vertex[i]][k] - at[k];
-            s->x[i][k] = d;
+            s->x[k][i] = d;
             largest |= (uint32_t)(d < 0 ? -d : d);
         }
-    }
-    const int shift = SHAPE_BITS + 1 - (int)bit_length(largest);
-    for (uint32_t i = 0; i < ring->count; i++)
-        for (int k = 0; k < 3; k++)
-            s->x[i][k] = scaled(s->x[i][k], shift);
-
+    const int shift = SUM_BITS - (int)pmesh_bit_length(n) -
+                      (int)pmesh_bit_length(largest);
     int64_t drift[3] = { 0, 0, 0 };
     s->drift_count = 0;
-    for (uint32_t i = 0; i < ring->count; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         const uint32_t x = ring->vertex[i];
+        for (int k = 0; k < 3; k++)
+            s->x[k][i] = (int32_t)pmesh_scale(s->x[k][i], shift);
         if (c->state[x] != PMESH_NEWBORN)
             continue;
         const int32_t *p = c->mesh.position[c->mesh.parent[x]];
         for (int k = 0; k < 3; k++)
-            drift[k] += scaled(c->mesh.position[x][k] - p[k], shift);
+            drift[k] += c->mesh.position[x][k] - p[k];
         s->drift_count++;
     }
-    for (int k = 0; k < 3; k++)
-        s->drift[k] = s->drift_count ? drift[k] / s->drift_count : 0;
+    const int64_t far = 1 << SUM_BITS;
+    for (int k = 0; k < 3 && s->drift_count; k++) {
+        const int64_t d = pmesh_scale(drift[k], shift) / s->drift_count;
+        s->drift[k] = (int32_t)(d < -far ? -far : d > far ? far : d);
+    }
 }
 
 static void shape_sums(shape *s)
 {
-    const uint32_t n = s->count, rounds = s->open ? n : 2 * n;
-    for (int k = 0; k < 3; k++)
-        s->sum[0][k] = 0;
-    s->square[0] = 0;
-    for (uint32_t i = 0; i < rounds; i++) {
-        const int32_t *x = s->x[i < n ? i : i - n];
-        int64_t square = 0;
-        for (int k = 0; k < 3; k++) {
-            s->sum[i + 1][k] = s->sum[i][k] + x[k];
-            square += (int64_t)x[k] * x[k];
-        }
-        s->square[i + 1] = s->square[i] + square;
+    const uint32_t n = s->count, end = (s->open ? n : 2 * n) + LANES;
+    for (int k = 0; k < 3; k++) {
+        int32_t *x = s->x[k], *sum = s->sum[k];
+        for (uint32_t i = n; i < end; i++)
+            x[i] = s->open ? 0 : x[i - n];
+        sum[0] = 0;
+        for (uint32_t i = 0; i < end; i++)
+            sum[i + 1] = sum[i] + x[i];
     }
-    const int64_t size = s->square[n] / n;
-    s->per_size = SIZE_ONE / (size ? size : 1);
+    s->square[0] = 0;
+    for (uint32_t i = 0; i < end; i++)
+        s->square[i + 1] = s->square[i] + s->x[0][i] * s->x[0][i] +
+                           s->x[1][i] * s->x[1][i] + s->x[2][i] * s->x[2][i];
+    const int32_t size = s->square[n] / (int32_t)n;
+    s->per_size = (1 << 27) / (size > LEAST_SIZE ? size : LEAST_SIZE);
 }
 
 /* What the states of three consecutive members and the degree of the middle
@@ -112,159 +128,217 @@ static void shape_topology(shape *s, const pmesh_codec *c,
                            const pmesh_ring *ring)
 {
     pmesh_cut_weights *w = s->weights;
-    const uint32_t n = ring->count;
+    const uint32_t n = s->count;
     uint8_t state[PMESH_MAX_RING + 2];
     for (uint32_t i = 0; i < n; i++)
         state[i + 1] = c->state[ring->vertex[i]];
     state[0] = ring->open ? PMESH_GHOST : state[n];
     state[n + 1] = ring->open ? PMESH_GHOST : state[1];
     for (uint32_t i = 0; i < n; i++) {
-        const uint32_t degree = c->degree[ring->vertex[i]];
-        s->degree[i] = &w->degree[degree < PMESH_CUT_DEGREES
-                                      ? degree
-                                      : PMESH_CUT_DEGREES - 1];
-        s->state[0][i] = &w->state[state[i]][state[i + 1]][state[i + 2]];
-        s->state[1][i] = &w->state[state[i + 2]][state[i + 1]][state[i]];
+        const uint32_t many = c->degree[ring->vertex[i]];
+        const uint32_t degree =
+            many < PMESH_CUT_DEGREES ? many : PMESH_CUT_DEGREES - 1;
+        s->degree[0][i] = &w->degree[0][degree];
+        s->degree[1][i] = &w->degree[1][degree];
+        s->state[0][i] = &w->state[0][state[i]][state[i + 1]][state[i + 2]];
+        s->state[1][i] = &w->state[1][state[i + 2]][state[i + 1]][state[i]];
+        for (int side = 0; side < 2; side++)
+            s->wing[side][i] = *s->degree[side][i] + *s->state[side][i];
     }
+    const uint32_t end = (s->open ? n : 2 * n) + LANES;
+    for (uint32_t i = n; i < end; i++)
+        for (int side = 0; side < 2; side++)
+            s->wing[side][i] = s->open ? 0 : s->wing[side][i - n];
 }
 
-/* One way to cut, by ring positions. */
-typedef struct option {
-    uint8_t a, b; /* wings: the first and the last member that u gets */
-} option;
+/* ---- options and their costs --------------------------------------------- */
 
-/* Both ends of what u gets; a ghost stands beyond either end. */
-static uint32_t option_span(const shape *s, option o, uint32_t *first)
+static int32_t *span_weight(const shape *s, bool ghost, uint32_t span)
 {
-    const uint32_t last = o.b == GHOST ? s->count - 1 : o.b;
-    *first = o.a == GHOST ? 0 : o.a;
-    return *first <= last ? last - *first : s->count - *first + last;
+    const uint32_t n = s->count;
+    return &s->weights->span[ghost]
+                            [n < PMESH_CUT_RINGS ? n : PMESH_CUT_RINGS - 1]
+                            [span < PMESH_CUT_SPANS ? span
+                                                    : PMESH_CUT_SPANS - 1];
 }
 
-static int32_t *shape_weights(const shape *s, option o)
+static int32_t *shape_weights(const shape *s, bool ghost)
 {
-    const int kind = o.a == GHOST || o.b == GHOST ? 2 : s->open ? 1 : 0;
-    return s->weights->shape[kind][s->drift_count ? 1 : 0];
+    return s->weights->shape[ghost ? 2 : s->open][s->drift_count ? 1 : 0];
+}
+
+/* A row of options in lanes: what is to be known of each. */
+typedef struct row {
+    int32_t part[3][LANES];   /* sum of the members that u gets, */
+    int32_t square[LANES];    /* and of their squares */
+    int32_t a[3][LANES], b[3][LANES]; /* the wings */
+    int32_t to_u[LANES], to_v[LANES]; /* 2^15 / size of both rings */
+    int32_t place[LANES];     /* weights that do not depend on shape */
+} row;
+
+static inline int32_t term(int32_t square, int32_t per_size)
+{
+    const int32_t t = (square >> 10) * per_size >> 9;
+    return t > TERM_LIMIT ? TERM_LIMIT : t < -TERM_LIMIT ? -TERM_LIMIT : t;
 }
 
 /* Spread of u's ring, off-centre of v, reach of the wings, their angle, and
  * how far u strays from its newborn neighbours' displacement. */
-static void weigh_shape(const shape *s, option o, int32_t term[TERMS])
+static void weigh(const shape *s, const row *r, const int32_t w[TERMS],
+                  int16_t out[TERMS][LANES], int32_t cost[LANES])
 {
-    uint32_t first;
-    const uint32_t n = s->count, span = option_span(s, o, &first);
-    const int64_t members = span + 2; /* and v itself, which is at 0 */
-    const int64_t others =
-        n - span + (o.a != GHOST) + (o.b != GHOST); /* v's ring after */
-    int64_t mean[3], a[3] = { 0 }, b[3] = { 0 };
-    int64_t off = 0, stray = 0;
+    const int32_t per = s->per_size, drifts = s->drift_count ? per : 0;
+    const int32_t w0 = w[0] >> 4, w1 = w[1] >> 4, w2 = w[2] >> 4,
+                  w3 = w[3] >> 4, w4 = w[4] >> 4;
+    int32_t mean_square[LANES] = { 0 }, off[LANES] = { 0 },
+            reach[LANES] = { 0 }, angle[LANES] = { 0 }, stray[LANES] = { 0 };
 
     for (int k = 0; k < 3; k++) {
-        const int64_t part = s->sum[first + span + 1][k] - s->sum[first][k];
-        mean[k] = part / members;
-        if (o.a != GHOST)
-            a[k] = s->x[o.a][k];
-        if (o.b != GHOST)
-            b[k] = s->x[o.b][k];
-        const int64_t rest =
-            (s->sum[n][k] - part + a[k] + b[k] + mean[k]) / others;
-        off += rest * rest;
-        stray += (mean[k] - s->drift[k]) * (mean[k] - s->drift[k]);
-    }
-    const int64_t spread =
-        (s->square[first + span + 1] - s->square[first]) / members -
-        dot(mean, mean);
-    const int64_t terms[TERMS] = { spread, off, dot(a, a) + dot(b, b),
-                                   dot(a, b), s->drift_count ? stray : 0 };
-    for (int t = 0; t < TERMS; t++)
-        term[t] = (int32_t)(terms[t] * s->per_size / TERM_ONE);
-}
-
-/* The weights of places: of the span, then two for each wing. */
-static uint32_t list_places(const shape *s, option o, int32_t *place[5])
-{
-    uint32_t first, count = 0;
-    const uint32_t span = option_span(s, o, &first);
-    const uint32_t n = s->count;
-    place[count++] =
-        &s->weights->span[o.a == GHOST || o.b == GHOST ? 1 : 0]
-                         [n < PMESH_CUT_RINGS ? n : PMESH_CUT_RINGS - 1]
-                         [span < PMESH_CUT_SPANS ? span : PMESH_CUT_SPANS - 1];
-    if (o.a != GHOST) {
-        place[count++] = s->degree[o.a];
-        place[count++] = s->state[0][o.a];
-    }
-    if (o.b != GHOST) {
-        place[count++] = s->degree[o.b];
-        place[count++] = s->state[1][o.b];
-    }
-    return count;
-}
-
-/* In 1/16 bit, up to a constant. */
-static int32_t option_cost(const shape *s, option o)
-{
-    int32_t term[TERMS], *place[5];
-    const int32_t *w = shape_weights(s, o);
-    int64_t cost = 0;
-    weigh_shape(s, o, term);
-    for (int t = 0; t < TERMS; t++)
-        cost += (int64_t)w[t] * term[t];
-    cost /= 256;
-    for (uint32_t i = list_places(s, o, place); i-- > 0;)
-        cost += *place[i];
-    return (int32_t)(cost / WEIGHT_ONE);
-}
-
-/* All legal cuts in a fixed order: by first, then end; the ghost last. */
-static uint32_t list_options(const shape *s, option *options)
-{
-    const uint32_t n = s->count;
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < n; i++) {
-        const uint32_t spans = s->open ? n - 1 - i : n - 1;
-        for (uint32_t d = 1; d <= spans; d++) {
-            const uint32_t j = i + d < n ? i + d : i + d - n;
-            options[count++] = (option){ (uint8_t)i, (uint8_t)j };
+        const int32_t all = s->sum[k][s->count], drift = s->drift[k];
+        for (int i = 0; i < LANES; i++) {
+            const int32_t a = r->a[k][i], b = r->b[k][i];
+            const int32_t mean = r->part[k][i] * r->to_u[i] >> SHARE_BITS;
+            const int32_t rest =
+                (all - r->part[k][i] + a + b + mean) * r->to_v[i] >>
+                SHARE_BITS;
+            mean_square[i] += mean * mean;
+            off[i] += rest * rest;
+            reach[i] += a * a + b * b;
+            angle[i] += a * b;
+            stray[i] += (mean - drift) * (mean - drift);
         }
     }
-    for (uint32_t i = 0; s->open && i < n; i++) {
-        options[count++] = (option){ (uint8_t)i, GHOST };
-        options[count++] = (option){ GHOST, (uint8_t)i };
+    for (int i = 0; i < LANES; i++) {
+        const int32_t spread = (r->square[i] >> 9) * r->to_u[i] >>
+                               (SHARE_BITS - 9);
+        const int32_t t0 = term(spread - mean_square[i], per);
+        const int32_t t1 = term(off[i], per), t2 = term(reach[i], per);
+        const int32_t t3 = term(angle[i], per), t4 = term(stray[i], drifts);
+        const int32_t sum = w0 * t0 + w1 * t1 + w2 * t2 + w3 * t3 + w4 * t4;
+        out[0][i] = (int16_t)t0;
+        out[1][i] = (int16_t)t1;
+        out[2][i] = (int16_t)t2;
+        out[3][i] = (int16_t)t3;
+        out[4][i] = (int16_t)t4;
+        cost[i] = ((sum >> 4) + (r->place[i] >> 4)) >> WEIGHT_BITS;
     }
-    return count;
 }
 
-static uint32_t cheapest(const int32_t *costs, uint32_t count)
+/* Weighs a row whose first `live` lanes are options and appends it. */
+static void append(const shape *s, options *list, const row *r, uint32_t live,
+                   bool ghost)
 {
-    uint32_t best = 0;
-    for (uint32_t i = 1; i < count; i++)
-        if (costs[i] < costs[best])
-            best = i;
-    return best;
+    int32_t *cost = &list->cost[list->count];
+    weigh(s, r, shape_weights(s, ghost), list->term[list->count / LANES],
+          cost);
+    for (uint32_t i = live; i < LANES; i++)
+        cost[i] = TAKEN;
+    list->count += LANES;
 }
+
+/* Options whose wings are members `first` + lane and `span` further. */
+static void append_inner(const shape *s, options *list, uint32_t first,
+                         uint32_t span, uint32_t live)
+{
+    const uint32_t n = s->count, end = first + span;
+    const int32_t place = *span_weight(s, false, span);
+    row r;
+    for (int k = 0; k < 3; k++)
+        for (uint32_t i = 0; i < LANES; i++) {
+            r.part[k][i] = s->sum[k][end + 1 + i] - s->sum[k][first + i];
+            r.a[k][i] = s->x[k][first + i];
+            r.b[k][i] = s->x[k][end + i];
+        }
+    for (uint32_t i = 0; i < LANES; i++) {
+        r.square[i] = s->square[end + 1 + i] - s->square[first + i];
+        r.to_u[i] = share_of[span + 2];
+        r.to_v[i] = share_of[n - span + 2];
+        r.place[i] =
+            place + s->wing[0][first + i] + s->wing[1][end + i];
+        list->a[list->count + i] = (uint8_t)(first + i);
+        list->b[list->count + i] =
+            (uint8_t)(end + i < n ? end + i : end + i - n);
+    }
+    append(s, list, &r, live, false);
+}
+
+/* Of an open ring: wing a (side 0) is a member and b the ghost, or the other
+ * way round (side 1). */
+static void append_outer(const shape *s, options *list, uint32_t first,
+                         int side)
+{
+    const uint32_t n = s->count;
+    const uint32_t live = n - first < LANES ? n - first : LANES;
+    row r = { .place = { 0 } };
+    for (uint32_t i = 0; i < live; i++) {
+        const uint32_t x = first + i;
+        const uint32_t from = side ? 0 : x, end = side ? x : n - 1;
+        for (int k = 0; k < 3; k++) {
+            r.part[k][i] = s->sum[k][end + 1] - s->sum[k][from];
+            (side ? r.b : r.a)[k][i] = s->x[k][x];
+        }
+        r.square[i] = s->square[end + 1] - s->square[from];
+        r.to_u[i] = share_of[end - from + 2];
+        r.to_v[i] = share_of[n - (end - from) + 1];
+        r.place[i] = *span_weight(s, true, end - from) + s->wing[side][x];
+        list->a[list->count + i] = (uint8_t)(side ? GHOST : x);
+        list->b[list->count + i] = (uint8_t)(side ? x : GHOST);
+    }
+    append(s, list, &r, live, true);
+}
+
+/* All legal cuts in a fixed order: by span, then first; the ghost last. */
+static void list_options(const shape *s, options *list)
+{
+    const uint32_t n = s->count;
+    list->count = 0;
+    for (uint32_t span = 1; span < n; span++) {
+        const uint32_t firsts = s->open ? n - span : n;
+        for (uint32_t i = 0; i < firsts; i += LANES)
+            append_inner(s, list, i, span,
+                         firsts - i < LANES ? firsts - i : LANES);
+    }
+    for (int side = 0; s->open && side < 2; side++)
+        for (uint32_t i = 0; i < n; i += LANES)
+            append_outer(s, list, i, side);
+}
+
+/* ---- coding -------------------------------------------------------------- */
+
+static uint32_t cheapest(const options *list)
+{
+    int32_t least = TAKEN;
+    uint32_t i = 0;
+    for (uint32_t k = 0; k < list->count; k++)
+        least = list->cost[k] < least ? list->cost[k] : least;
+    while (i + 1 < list->count && list->cost[i] != least)
+        i++;
+    return i;
+}
+
+/* 65536 x 2^(-i / 16), rounded. */
+static const uint32_t part_of[16] = {
+    65536, 62757, 60097, 57549, 55109, 52773, 50535, 48393,
+    46341, 44376, 42495, 40693, 38968, 37316, 35734, 34219,
+};
 
 /* 2^(-cost / 16) of every option, the least cost as 65536; returns the sum. */
-static uint32_t make_shares(const int32_t *costs, uint32_t count, int32_t least,
-                            uint32_t *shares)
+static uint32_t make_shares(options *list, int32_t least)
 {
     uint32_t sum = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        const int64_t excess = (int64_t)costs[i] - least;
-        shares[i] = excess < 16 * 17
-                        ? pmesh_cut_share[excess % 16] >> (excess / 16)
-                        : 0;
-        sum += shares[i];
+    for (uint32_t i = 0; i < list->count; i++) {
+        const int64_t excess = (int64_t)list->cost[i] - least;
+        list->share[i] = excess < 16 * 17
+                             ? part_of[excess % 16] >> (excess / 16)
+                             : 0;
+        sum += list->share[i];
     }
     return sum;
 }
 
 static int half_octave(uint64_t value)
 {
-    int n = 0;
-    for (uint64_t square = value * value; square >>= 1;)
-        n++;
-    return n;
+    return value ? (int)pmesh_bit_length(value * value) - 1 : 0;
 }
 
 /* The odds of a share against the rest of the sum. */
@@ -274,63 +348,91 @@ static unsigned odds_class(uint32_t share, uint32_t sum)
     return k < 0 ? 0 : k >= PMESH_CUT_ODDS ? PMESH_CUT_ODDS - 1 : (unsigned)k;
 }
 
-static void adjust(int32_t *weight, int64_t change)
+static void adjust(int32_t *weight, int32_t change, int32_t largest)
 {
-    const int64_t w = *weight - change;
-    *weight = (int32_t)(w > LARGEST_WEIGHT    ? LARGEST_WEIGHT
-                        : w < -LARGEST_WEIGHT ? -LARGEST_WEIGHT
-                                              : w);
+    const int32_t w = *weight - change;
+    *weight = w > largest ? largest : w < -largest ? -largest : w;
+}
+
+static void learn_option(shape *s, const options *list, uint32_t i,
+                         int32_t error)
+{
+    const uint32_t n = s->count, a = list->a[i], b = list->b[i];
+    const bool ghost = a == GHOST || b == GHOST;
+    const uint32_t from = a == GHOST ? 0 : a, end = b == GHOST ? n - 1 : b;
+    const uint32_t span = from <= end ? end - from : n - from + end;
+    const int32_t change = error / LEARN_PLACE;
+    int32_t *w = shape_weights(s, ghost);
+    for (int t = 0; t < TERMS; t++)
+        adjust(&w[t], error * list->term[i / LANES][t][i % LANES] / LEARN_SHAPE,
+               LARGEST_SHAPE);
+    adjust(span_weight(s, ghost, span), change, LARGEST_PLACE);
+    if (a != GHOST) {
+        adjust(s->degree[0][a], change, LARGEST_PLACE);
+        adjust(s->state[0][a], change, LARGEST_PLACE);
+    }
+    if (b != GHOST) {
+        adjust(s->degree[1][b], change, LARGEST_PLACE);
+        adjust(s->state[1][b], change, LARGEST_PLACE);
+    }
 }
 
 /* One step down the gradient of the true cut's code length, as if it had been
  * coded by the shares: each option is off by its share, less 1 for the true
  * one. */
-static void learn(shape *s, const option *options, uint32_t count,
-                  const uint32_t *shares, uint32_t sum, uint32_t truth)
+static void learn(shape *s, const options *list, uint32_t sum, uint32_t truth)
 {
     const uint64_t per_sum = ((uint64_t)SHARE_ONE << 28) / sum;
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = 0; i < list->count; i++) {
         const int32_t error = (i == truth ? SHARE_ONE : 0) -
-                              (int32_t)(shares[i] * per_sum >> 28);
-        if (error > -LEAST_ERROR && error < LEAST_ERROR)
-            continue;
-        int32_t term[TERMS], *place[5];
-        int32_t *w = shape_weights(s, options[i]);
-        weigh_shape(s, options[i], term);
-        for (int t = 0; t < TERMS; t++)
-            adjust(&w[t], (int64_t)error * term[t] / LEARN_SHAPE);
-        for (uint32_t k = list_places(s, options[i], place); k-- > 0;)
-            adjust(place[k], error / LEARN_PLACE);
+                              (int32_t)(list->share[i] * per_sum >> 28);
+        if (error <= -LEAST_ERROR || error >= LEAST_ERROR)
+            learn_option(s, list, i, error);
     }
+}
+
+/* Options of the ring; rows have lanes that are none. */
+static uint32_t count_options(const shape *s)
+{
+    const uint32_t n = s->count;
+    return s->open ? n * (n - 1) / 2 + 2 * n : n * (n - 1);
 }
 
 /* The rank of the true option among all by cost; each question "is it the
  * cheapest left" is asked in the context of that option's odds. */
-static uint32_t code_rank(pmesh_codec *c, pmesh_coder *coder, bool open,
-                          int32_t *costs, const uint32_t *shares, uint32_t sum,
-                          uint32_t count, uint32_t truth)
+static uint32_t code_rank(pmesh_codec *c, pmesh_coder *coder, const shape *s,
+                          options *list, uint32_t best, uint32_t sum,
+                          uint32_t truth)
 {
+    const uint32_t count = count_options(s);
     for (uint32_t rank = 0; rank + 1 < count; rank++) {
-        const uint32_t best = cheapest(costs, count);
-        pmesh_bit *m = &c->models.cut[open]
+        pmesh_bit *m = &c->models.cut[s->open]
                             [rank < PMESH_CUT_RANKS ? rank
                                                     : PMESH_CUT_RANKS - 1]
-                            [odds_class(shares[best], sum)];
+                            [odds_class(list->share[best], sum)];
         if (!pmesh_code_bit(coder, m, best != truth))
             return best;
-        costs[best] = TAKEN;
-        sum -= shares[best];
+        list->cost[best] = TAKEN;
+        sum -= list->share[best];
+        best = cheapest(list);
     }
-    return cheapest(costs, count);
+    return best;
+}
+
+static uint32_t find(const options *list, const pmesh_cut *cut)
+{
+    for (uint32_t i = 0; i < list->count; i++)
+        if (list->cost[i] != TAKEN && list->a[i] == (uint8_t)cut->first &&
+            list->b[i] == (uint8_t)cut->end)
+            return i; /* PMESH_NONE and GHOST agree in their low bytes */
+    return 0;
 }
 
 void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
                     const pmesh_ring *ring, pmesh_cut *cut)
 {
+    options *list = c->cut_room;
     shape s;
-    option options[MAX_CUTS];
-    int32_t costs[MAX_CUTS];
-    uint32_t shares[MAX_CUTS], truth = 0;
 
     s.count = ring->count;
     s.open = ring->open;
@@ -338,19 +440,13 @@ void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
     shape_points(&s, c, v, ring);
     shape_sums(&s);
     shape_topology(&s, c, ring);
-    const uint32_t count = list_options(&s, options);
-    for (uint32_t i = 0; i < count; i++) {
-        costs[i] = option_cost(&s, options[i]);
-        if (options[i].a == (uint8_t)cut->first &&
-            options[i].b == (uint8_t)cut->end)
-            truth = i; /* PMESH_NONE and GHOST agree in their low bytes */
-    }
-    const uint32_t sum =
-        make_shares(costs, count, costs[cheapest(costs, count)], shares);
-    truth = code_rank(c, coder, s.open, costs, shares, sum, count, truth);
-    learn(&s, options, count, shares, sum, truth);
+    list_options(&s, list);
+    const uint32_t best = cheapest(list);
+    const uint32_t sum = make_shares(list, list->cost[best]);
+    const uint32_t truth = code_rank(c, coder, &s, list, best, sum,
+                                     coder->encoding ? find(list, cut) : 0);
+    learn(&s, list, sum, truth);
 
-    const option o = options[truth];
-    cut->first = o.a == GHOST ? PMESH_NONE : o.a;
-    cut->end = o.b == GHOST ? PMESH_NONE : o.b;
+    cut->first = list->a[truth] == GHOST ? PMESH_NONE : list->a[truth];
+    cut->end = list->b[truth] == GHOST ? PMESH_NONE : list->b[truth];
 }

@@ -9,6 +9,9 @@
 
 #include "format/codec.h"
 
+/* Bytes of cut_room. */
+uint64_t pmesh_cut_room(void);
+
 /* Codes the cut of `v`, whose ring is given; what comes out is legal. */
 void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
                     const pmesh_ring *ring, pmesh_cut *cut);

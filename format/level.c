@@ -75,44 +75,74 @@ static uint32_t flag_context(const pmesh_codec *c, const pmesh_ring *ring)
     return ((valence * 6 + split) * 5 + kept) * 7 + unvisited;
 }
 
-/* The mean of u's ring: of the members that the cut gives it, and v. */
-static void place_provisionally(pmesh_mesh *m, uint32_t u, uint32_t v,
-                                const pmesh_ring *ring, pmesh_cut cut)
+/* What the cut hands over to u: members first .. last, cyclically. */
+static uint32_t handed_over(const pmesh_ring *ring, pmesh_cut cut,
+                            uint32_t *first)
 {
-    uint32_t i = cut.first == PMESH_NONE ? 0 : cut.first;
     const uint32_t last = cut.end == PMESH_NONE ? ring->count - 1 : cut.end;
-    int64_t sum[3], count = 1;
-    for (int k = 0; k < 3; k++)
-        sum[k] = m->position[v][k];
-    for (;;) {
-        for (int k = 0; k < 3; k++)
-            sum[k] += m->position[ring->vertex[i]][k];
-        count++;
-        if (i == last)
-            break;
-        i = i + 1 == ring->count ? 0 : i + 1;
-    }
-    for (int k = 0; k < 3; k++)
-        m->position[u][k] = (int32_t)(sum[k] / count);
+    *first = cut.first == PMESH_NONE ? 0 : cut.first;
+    return (*first <= last ? last - *first : ring->count - *first + last) + 1;
 }
 
+static uint32_t member(const pmesh_ring *ring, uint32_t i)
+{
+    return ring->vertex[i < ring->count ? i : i - ring->count];
+}
+
+/* u goes to the mean of its ring: of the members that the cut gives it, and
+ * v. */
+static void place_provisionally(pmesh_codec *c, uint32_t u, uint32_t v,
+                                const pmesh_ring *ring, pmesh_cut cut)
+{
+    int32_t(*position)[3] = c->mesh.position;
+    uint32_t first;
+    const uint32_t count = handed_over(ring, cut, &first);
+    int64_t sum[3] = { position[v][0], position[v][1], position[v][2] };
+    for (uint32_t i = first; i < first + count; i++)
+        for (int k = 0; k < 3; k++)
+            sum[k] += position[member(ring, i)][k];
+    for (int k = 0; k < 3; k++)
+        position[u][k] = (int32_t)(sum[k] / (count + 1));
+}
+
+static void add(uint32_t sum[3], const int32_t position[3])
+{
+    for (int k = 0; k < 3; k++)
+        sum[k] += (uint32_t)position[k];
+}
+
+static void subtract(uint32_t sum[3], const int32_t position[3])
+{
+    for (int k = 0; k < 3; k++)
+        sum[k] -= (uint32_t)position[k];
+}
+
+/* Members that are no wings change their neighbour v for u; wings gain u. */
 static void count_neighbours(pmesh_codec *c, uint32_t v, uint32_t u,
                              const pmesh_ring *ring, pmesh_cut cut)
 {
-    const uint32_t n = ring->count;
-    const uint32_t first = cut.first == PMESH_NONE ? 0 : cut.first;
-    const uint32_t end = cut.end == PMESH_NONE ? n - 1 : cut.end;
-    const uint32_t span = first <= end ? end - first : n - first + end;
-    c->degree[u] = span + 2;
-    c->degree[v] = n - span;
-    if (cut.first != PMESH_NONE) {
-        c->degree[v]++;
-        c->degree[ring->vertex[cut.first]]++;
+    int32_t(*position)[3] = c->mesh.position;
+    uint32_t first;
+    const uint32_t count = handed_over(ring, cut, &first);
+    memset(c->around[u], 0, sizeof c->around[u]);
+    add(c->around[u], position[v]);
+    add(c->around[v], position[u]);
+    for (uint32_t i = first; i < first + count; i++) {
+        const uint32_t x = member(ring, i);
+        const bool wing = (i == first && cut.first != PMESH_NONE) ||
+                          (i == first + count - 1 && cut.end != PMESH_NONE);
+        add(c->around[u], position[x]);
+        add(c->around[x], position[u]);
+        if (wing) {
+            c->degree[x]++;
+        } else {
+            subtract(c->around[x], position[v]);
+            subtract(c->around[v], position[x]);
+        }
     }
-    if (cut.end != PMESH_NONE) {
-        c->degree[v]++;
-        c->degree[ring->vertex[cut.end]]++;
-    }
+    c->degree[u] = count + 1;
+    c->degree[v] = ring->count - count + 1 + (cut.first != PMESH_NONE) +
+                   (cut.end != PMESH_NONE);
 }
 
 static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
@@ -135,7 +165,7 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
     c->child_face[index] = m->face_count;
     if (c->sizes.moves)
         memcpy(c->unsplit[index], m->position[v], sizeof *c->unsplit);
-    place_provisionally(m, u, v, ring, cut);
+    place_provisionally(c, u, v, ring, cut);
     count_neighbours(c, v, u, ring, cut);
     pmesh_mesh_split(m, v, ring, cut);
     c->state[v] = PMESH_PARENT;
@@ -178,17 +208,28 @@ static pmesh_predict_kind child_kind(const pmesh_codec *c)
     return c->sizes.moves ? PMESH_PREDICT_MOVED_CHILD : PMESH_PREDICT_CHILD;
 }
 
+/* NULL if the ring is too large. */
+static const pmesh_ring *gather(const pmesh_codec *c, uint32_t v,
+                                pmesh_ring *ring)
+{
+    return pmesh_ring_gather(&c->mesh, v, ring) ? ring : NULL;
+}
+
 /* Connectivity is complete now: a better guess for every provisional one. */
 static void sweep(pmesh_codec *c)
 {
     pmesh_mesh *m = &c->mesh;
     const uint32_t begin = c->block.vertex;
     for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
+        pmesh_ring space;
+        const pmesh_ring *ring = gather(c, u, &space);
+        const uint32_t v = m->parent[u];
         pmesh_prediction p;
-        pmesh_predict(c, child_kind(c), u, m->parent[u],
-                      m->position[m->parent[u]], begin, &p);
+        int32_t position[3];
+        pmesh_predict(c, child_kind(c), u, ring, v, m->position[v], begin, &p);
         for (int k = 0; k < 3; k++)
-            m->position[u][k] = (int32_t)(p.position[k] / 16);
+            position[k] = (int32_t)(p.position[k] >> 4);
+        pmesh_place(c, u, ring, position);
     }
 }
 
@@ -205,6 +246,20 @@ static uint32_t importance_of(const pmesh_mesh *m, uint32_t u,
     return size > UINT32_MAX ? UINT32_MAX : (uint32_t)size;
 }
 
+/* Codes the final position of x, a child (which 0) or a moved parent (1). */
+static bool code_position(pmesh_codec *c, pmesh_coder *coder,
+                          const pmesh_oracle *oracle, int which, uint32_t x,
+                          const pmesh_ring *ring, const pmesh_prediction *p)
+{
+    int32_t position[3] = { 0, 0, 0 };
+    if (oracle)
+        oracle->position(oracle->user, x, position);
+    if (!pmesh_residual_code(c, coder, which, p, position))
+        return false;
+    pmesh_place(c, x, ring, position);
+    return true;
+}
+
 static bool code_moved_parent(pmesh_codec *c, pmesh_coder *coder,
                               const pmesh_oracle *oracle, uint32_t u)
 {
@@ -212,17 +267,15 @@ static bool code_moved_parent(pmesh_codec *c, pmesh_coder *coder,
     const uint32_t v = m->parent[u];
     const int32_t *before = c->unsplit[u - c->block.vertex];
     int32_t mirrored[3];
+    pmesh_ring space;
+    const pmesh_ring *ring = gather(c, v, &space);
     pmesh_prediction p;
     for (int k = 0; k < 3; k++) /* parent and child part about evenly */
         mirrored[k] = clamp(2 * (int64_t)before[k] - m->position[u][k],
                             c->bounds[k]);
-    pmesh_predict(c, PMESH_PREDICT_MOVED_PARENT, v, u, mirrored, u + 1, &p);
-    if (oracle)
-        oracle->position(oracle->user, v, m->position[v]);
-    if (!pmesh_residual_code(c, coder, 1, &p, m->position[v]))
-        return false;
-    pmesh_predict_learn(&p, m->position[v]);
-    return true;
+    pmesh_predict(c, PMESH_PREDICT_MOVED_PARENT, v, ring, u, mirrored, u + 1,
+                  &p);
+    return code_position(c, coder, oracle, 1, v, ring, &p);
 }
 
 static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
@@ -232,15 +285,13 @@ static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
     const uint32_t begin = c->block.vertex;
     for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
         const uint32_t v = m->parent[u];
+        pmesh_ring space;
+        const pmesh_ring *ring = gather(c, u, &space);
         pmesh_prediction p;
-        pmesh_predict(c, child_kind(c), u, v, m->position[v], u, &p);
-        if (oracle)
-            oracle->position(oracle->user, u, m->position[u]);
-        if (!pmesh_residual_code(c, coder, 0, &p, m->position[u]))
+        pmesh_predict(c, child_kind(c), u, ring, v, m->position[v], u, &p);
+        if (!code_position(c, coder, oracle, 0, u, ring, &p))
             return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
-        pmesh_predict_learn(&p, m->position[u]);
-        c->importance[u - begin] =
-            importance_of(m, u, m->position[v], &p);
+        c->importance[u - begin] = importance_of(m, u, m->position[v], &p);
         if (c->sizes.moves && !code_moved_parent(c, coder, oracle, u))
             return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
     }

@@ -1,25 +1,31 @@
 /* SPDX-License-Identifier: MIT */
 #include "format/models.h"
 
-/* Expected residuals before anything was seen, as fractions of 4096. */
+/* What was never seen while the tables were made. */
 enum { ALONG_START = 900, ACROSS_START = 400 };
 
+#define COUNT(array, item) (sizeof(array) / sizeof(item))
 #define INIT_BITS(array) \
-    pmesh_bits_init((pmesh_bit *)(array), sizeof(array) / sizeof(pmesh_bit))
+    pmesh_bits_init((pmesh_bit *)(array), COUNT(array, pmesh_bit))
 
-static void residual_init(pmesh_residual_model *m)
+static void residual_init(pmesh_residual_model *m, const pmesh_tables *start)
 {
-    INIT_BITS(m->zero);
-    INIT_BITS(m->sign);
-    INIT_BITS(m->unary);
-    INIT_BITS(m->low);
+    for (int scale = 0; scale < PMESH_SCALES; scale++) {
+        const uint8_t *from = start->residual + scale * PMESH_RESIDUAL_BITS;
+        pmesh_bits_start(m->any[scale].zero, PMESH_RESIDUAL_BITS, from);
+        for (int i = 0; i < 3 * PMESH_FAR; i++)
+            pmesh_bits_start(m->here[scale][0][i].zero, PMESH_RESIDUAL_BITS,
+                             from);
+    }
+    pmesh_bits_start(m->low[0], COUNT(m->low, pmesh_bit), start->low);
     pmesh_number_init(&m->escape);
 }
 
-static void init_means(pmesh_mean *means, size_t size, uint32_t value)
+static void means_init(pmesh_mean *to, const uint16_t *from, size_t count,
+                       uint32_t otherwise)
 {
-    for (size_t i = 0; i < size / sizeof *means; i++)
-        means[i] = (pmesh_mean){ value, 0 };
+    for (size_t i = 0; i < count; i++)
+        to[i] = (pmesh_mean){ from[i] ? from[i] : otherwise, 0 };
 }
 
 static void wedge_init(pmesh_wedge_models *m)
@@ -32,31 +38,39 @@ static void wedge_init(pmesh_wedge_models *m)
     pmesh_number_init(&m->pick);
 }
 
-/* The tables are kept short; learning needs 8 bits more. */
-#define INIT_WEIGHTS(to, from) \
-    init_weights((int32_t *)(to), (const int16_t *)(from), \
-                 sizeof(from) / sizeof(int16_t))
-
-static void init_weights(int32_t *to, const int16_t *from, size_t count)
+static void weights_init(int32_t *to, const int16_t *from, size_t count,
+                         int32_t unit)
 {
     for (size_t i = 0; i < count; i++)
-        to[i] = from[i] * 256;
+        to[i] = from[i] * unit;
 }
 
-static void cut_weights_init(pmesh_cut_weights *w)
+static void cut_init(pmesh_cut_weights *w, const pmesh_tables *start)
 {
-    INIT_WEIGHTS(w->shape, pmesh_cut_shape);
-    INIT_WEIGHTS(w->degree, pmesh_cut_degree);
-    INIT_WEIGHTS(w->state, pmesh_cut_state);
-    INIT_WEIGHTS(w->span, pmesh_cut_span);
+    weights_init(w->shape[0][0], start->shape, COUNT(w->shape, int32_t), 4);
+    weights_init(w->degree[0], start->degree, COUNT(w->degree, int32_t), 256);
+    weights_init(w->state[0][0][0], start->state, COUNT(w->state, int32_t),
+                 256);
+    weights_init(w->span[0][0], start->span, COUNT(w->span, int32_t), 256);
 }
 
-void pmesh_models_init(pmesh_models *m)
+static void predict_init(pmesh_models *m, const pmesh_tables *start)
 {
-    INIT_BITS(m->flag);
-    INIT_BITS(m->cut);
-    cut_weights_init(&m->cut_weights);
-    INIT_WEIGHTS(m->predict, pmesh_predict_weight);
+    const int16_t *from = start->predict;
+    pmesh_fit(*fit)[2] = m->predict[0][0];
+    for (size_t i = 0; i < COUNT(m->predict, *fit); i++) {
+        pmesh_fit_init(&fit[i][0], from, 2);
+        pmesh_fit_init(&fit[i][1], from + 1, 2);
+        from += 2 * PMESH_FIT_TERMS;
+    }
+}
+
+void pmesh_models_init(pmesh_models *m, const pmesh_tables *start)
+{
+    pmesh_bits_start(m->flag, PMESH_FLAG_CONTEXTS, start->flag);
+    pmesh_bits_start(m->cut[0][0], COUNT(m->cut, pmesh_bit), start->rank);
+    cut_init(&m->cut_weights, start);
+    predict_init(m, start);
     INIT_BITS(m->base);
     INIT_BITS(m->value_sign);
     pmesh_bits_init(&m->base_sign, 1);
@@ -66,11 +80,10 @@ void pmesh_models_init(pmesh_models *m)
     for (int i = 0; i < PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS; i++)
         for (int k = 0; k < 2; k++)
             pmesh_number_init(&m->value[i][k]);
-    for (int which = 0; which < 2; which++) {
-        residual_init(&m->residual[which]);
-        init_means((pmesh_mean *)m->along[which], sizeof m->along[which],
-                   ALONG_START);
-        init_means((pmesh_mean *)m->across[which], sizeof m->across[which],
-                   ACROSS_START);
-    }
+    residual_init(&m->residual[0], start);
+    residual_init(&m->residual[1], start);
+    means_init(m->along[0][0][0], start->along, COUNT(m->along, pmesh_mean),
+               ALONG_START);
+    means_init(m->across[0][0], start->across, COUNT(m->across, pmesh_mean),
+               ACROSS_START);
 }

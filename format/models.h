@@ -1,30 +1,30 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * models.h - every adaptive model of a stream. They start as pmesh_models_init
- * leaves them and live from the base mesh to the last block.
+ * models.h - every adaptive model of a stream. They start from tables and live
+ * from the base mesh to the last block.
  */
 #ifndef PMESH_MODELS_H
 #define PMESH_MODELS_H
 
 #include "format/coder.h"
+#include "format/fit.h"
 #include "format/pmesh.h"
 #include "format/tables.h"
 
-enum {
-    PMESH_FLAG_CONTEXTS = 8 * 6 * 5 * 7,
-    PMESH_CUT_RANKS = 4,
-    PMESH_CUT_ODDS = 32,  /* half octaves of a cut's odds against the rest */
-    PMESH_SCALES = 60,    /* half octaves of an expected residual */
-    PMESH_UNARY = 14,
-    PMESH_IRREGULAR = 5,  /* irregular neighbours: 0 .. 3, more */
-    PMESH_ROUGH = 14      /* how far a ring is from plane */
-};
+enum { PMESH_FAR = 4 }; /* how far off a coordinate was: octaves */
 
 /* Signed residuals of an expected size (SPEC 6.5). */
+typedef struct pmesh_residual_bits {
+    pmesh_bit zero[PMESH_LEANS];
+    pmesh_bit sign[PMESH_LEANS];
+    pmesh_bit unary[PMESH_UNARY];
+} pmesh_residual_bits;
+
+/* Of each bit there are two models: one for all coordinates, one for those at
+ * this place (first, second, last) behind one that was as far off as this. */
 typedef struct pmesh_residual_model {
-    pmesh_bit zero[PMESH_SCALES][3];
-    pmesh_bit sign[PMESH_SCALES][3];
-    pmesh_bit unary[PMESH_SCALES][PMESH_UNARY];
+    pmesh_residual_bits any[PMESH_SCALES];
+    pmesh_residual_bits here[PMESH_SCALES][3][PMESH_FAR];
     pmesh_bit low[PMESH_SCALES][3];
     pmesh_number escape;
 } pmesh_residual_model;
@@ -45,12 +45,12 @@ typedef struct pmesh_wedge_models {
     pmesh_number pick;
 } pmesh_wedge_models;
 
-/* What a cut's cost is made of (SPEC 6.4), in 1/4096 bit; starts from the
- * tables and learns from every cut. */
+/* What a cut's cost is made of (SPEC 6.4); learns from every cut. Shape in
+ * 1/4096 bit, the rest in 1/65536. */
 typedef struct pmesh_cut_weights {
-    int32_t shape[3][2][5];
-    int32_t degree[PMESH_CUT_DEGREES];
-    int32_t state[PMESH_STATES][PMESH_STATES][PMESH_STATES];
+    int32_t shape[3][2][PMESH_CUT_TERMS];
+    int32_t degree[2][PMESH_CUT_DEGREES];
+    int32_t state[2][PMESH_STATES][PMESH_STATES][PMESH_STATES];
     int32_t span[2][PMESH_CUT_RINGS][PMESH_CUT_SPANS];
 } pmesh_cut_weights;
 
@@ -58,13 +58,12 @@ typedef struct pmesh_models {
     pmesh_bit flag[PMESH_FLAG_CONTEXTS];
     pmesh_bit cut[2][PMESH_CUT_RANKS][PMESH_CUT_ODDS];
     pmesh_cut_weights cut_weights;
-    /* Weights of the predictor's terms in 1/65536, see pmesh_predict_weight;
-     * they start there and learn from every position. */
-    int32_t predict[PMESH_PREDICT_KINDS][PMESH_PREDICT_CLASSES][3]
-                   [PMESH_PREDICT_TERMS][2];
+    /* Weights of the predictor's terms, along the surface and across it; they
+     * start from the tables. */
+    pmesh_fit predict[PMESH_PREDICT_KINDS][PMESH_PREDICT_CLASSES][PMESH_UNKNOWN][2];
     pmesh_residual_model residual[2]; /* of a child, of a moved parent */
-    pmesh_mean along[2][PMESH_PREDICT_CLASSES][3][PMESH_IRREGULAR];
-    pmesh_mean across[2][PMESH_ROUGH][3];
+    pmesh_mean along[2][PMESH_PREDICT_CLASSES][PMESH_UNKNOWN][PMESH_IRREGULAR];
+    pmesh_mean across[2][PMESH_ROUGH][PMESH_UNKNOWN];
     pmesh_bit base[3][2];
     pmesh_number base_vertex;
     pmesh_number base_position;
@@ -74,6 +73,6 @@ typedef struct pmesh_models {
     pmesh_bit value_sign[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS][2];
 } pmesh_models;
 
-void pmesh_models_init(pmesh_models *m);
+void pmesh_models_init(pmesh_models *m, const pmesh_tables *start);
 
 #endif

@@ -1,231 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 #include "format/predict.h"
 
-#include "format/tables.h"
+#include <string.h>
+
+#include "format/star.h"
 
 enum {
-    FRACTION = 16,
-    NORMAL_ONE = 16384,
-    WEIGHT_ONE = 65536,
-    LEARN_RATE = WEIGHT_ONE / 32,
-    LARGEST_WEIGHT = 8 * WEIGHT_ONE
+    FRACTION_BITS = 4,
+    WEIGHT_BITS = 16,
+    TERM_LIMIT = 1 << 18, /* four times what a ring can span */
+    SUM_LIMIT = 1 << 26,
+    FIT_DROP = 5 /* bits of terms that learning does without */
 };
 
-uint32_t pmesh_isqrt(uint64_t value)
+static int64_t limited(int64_t value, int64_t limit)
 {
-    uint64_t root = 0;
-    for (uint64_t bit = (uint64_t)1 << 62; bit; bit >>= 2) {
-        if (value >= root + bit) {
-            value -= root + bit;
-            root = (root >> 1) + bit;
-        } else {
-            root >>= 1;
-        }
-    }
-    return (uint32_t)root;
-}
-
-/* The ring of x relative to a base point, in 1/16 steps: |coordinates| below
- * 2^28 for 24-bit grids. */
-typedef struct star {
-    uint32_t count, face_count;
-    bool open;
-    int64_t mean[3];
-    int64_t point[PMESH_MAX_RING][3];
-    /* Relative to the mean and divided by `divisor`, a power of two, so that
-     * coordinates are below 2^26; and the cross product of spoke i and i + 1,
-     * below 2^54: 48 of them can be added. */
-    int64_t divisor;
-    int64_t spoke[PMESH_MAX_RING][3];
-    int64_t face[PMESH_MAX_RING][3];
-} star;
-
-static void star_make(star *s, const pmesh_codec *c, const pmesh_ring *ring,
-                      const int32_t base[3])
-{
-    int64_t sum[3] = { 0, 0, 0 }, largest = 0;
-    s->count = ring->count;
-    s->face_count = ring->face_count;
-    s->open = ring->open;
-    for (uint32_t i = 0; i < s->count; i++) {
-        const int32_t *p = c->mesh.position[ring->vertex[i]];
-        for (int k = 0; k < 3; k++) {
-            s->point[i][k] = (int64_t)(p[k] - base[k]) * FRACTION;
-            sum[k] += s->point[i][k];
-        }
-    }
-    for (int k = 0; k < 3; k++)
-        s->mean[k] = sum[k] / s->count;
-    for (uint32_t i = 0; i < s->count; i++)
-        for (int k = 0; k < 3; k++) {
-            const int64_t d = s->point[i][k] - s->mean[k];
-            s->spoke[i][k] = d;
-            largest |= d < 0 ? -d : d;
-        }
-    s->divisor = 1;
-    while (largest / s->divisor >= (int64_t)1 << 26)
-        s->divisor *= 2;
-    for (uint32_t i = 0; i < s->count && s->divisor > 1; i++)
-        for (int k = 0; k < 3; k++)
-            s->spoke[i][k] /= s->divisor;
-}
-
-static void star_faces(star *s)
-{
-    for (uint32_t i = 0; i < s->face_count; i++) {
-        const int64_t *a = s->spoke[i];
-        const int64_t *b = s->spoke[i + 1 < s->count ? i + 1 : 0];
-        for (int k = 0; k < 3; k++) {
-            const int y = k == 2 ? 0 : k + 1, z = k == 0 ? 2 : k - 1;
-            s->face[i][k] = a[y] * b[z] - a[z] * b[y];
-        }
-    }
-}
-
-/* Sum of the face normals, scaled to length 16384. */
-static void star_normal(const star *s, int32_t normal[3])
-{
-    int64_t largest = 0, sum[3] = { 0, 0, 0 };
-    for (uint32_t i = 0; i < s->face_count; i++)
-        for (int k = 0; k < 3; k++)
-            sum[k] += s->face[i][k];
-    for (int k = 0; k < 3; k++)
-        largest |= sum[k] < 0 ? -sum[k] : sum[k];
-    int64_t divisor = 1;
-    while (largest / divisor >= (int64_t)1 << 30)
-        divisor *= 2;
-    uint64_t square = 0;
-    for (int k = 0; k < 3; k++) {
-        sum[k] /= divisor;
-        square += (uint64_t)(sum[k] * sum[k]);
-    }
-    const int64_t length = pmesh_isqrt(square);
-    for (int k = 0; k < 3; k++)
-        normal[k] = length ? (int32_t)(sum[k] * NORMAL_ONE / length) : 0;
-}
-
-/* About the length of v: the largest coordinate and 3/8 of the others. */
-static int64_t rough_length(const int64_t v[3])
-{
-    int64_t largest = 0, sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const int64_t size = v[k] < 0 ? -v[k] : v[k];
-        sum += size;
-        if (size > largest)
-            largest = size;
-    }
-    return largest + (sum - largest) * 3 / 8;
-}
-
-/* A weighted mean of points: weights below 2^28, coordinates below 2^27. */
-typedef struct centroid {
-    int64_t sum[3], weight;
-} centroid;
-
-static void centroid_add(centroid *c, int64_t weight, const int64_t a[3],
-                         const int64_t b[3])
-{
-    for (int k = 0; k < 3; k++)
-        c->sum[k] += weight * (a[k] + b[k]);
-    c->weight += weight;
-}
-
-/* In 1/16 steps from the ring's mean. */
-static void centroid_point(const centroid *c, int64_t part, const star *s,
-                           int64_t out[3])
-{
-    for (int k = 0; k < 3; k++)
-        out[k] = c->weight ? c->sum[k] / c->weight * s->divisor / part : 0;
-}
-
-/* Centres of the ring as polygon, as polyline, and of its spokes by length. */
-static void star_centres(const star *s, int64_t area[3], int64_t outline[3],
-                         int64_t spokes[3])
-{
-    static const int64_t zero[3] = { 0, 0, 0 };
-    centroid by_area = { { 0 }, 0 }, by_edge = { { 0 }, 0 },
-             by_spoke = { { 0 }, 0 };
-    int64_t largest = 0, divisor = 1;
-    for (uint32_t i = 0; i < s->face_count; i++)
-        largest |= rough_length(s->face[i]);
-    while (largest / divisor >= (int64_t)1 << 28)
-        divisor *= 2;
-    for (uint32_t i = 0; i < s->count; i++) {
-        const int64_t *a = s->spoke[i];
-        centroid_add(&by_spoke, rough_length(a), a, zero);
-        if (i >= s->face_count)
-            continue;
-        const int64_t *b = s->spoke[i + 1 < s->count ? i + 1 : 0];
-        const int64_t edge[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
-        centroid_add(&by_area, rough_length(s->face[i]) / divisor, a, b);
-        centroid_add(&by_edge, rough_length(edge), a, b);
-    }
-    centroid_point(&by_area, 3, s, area);
-    centroid_point(&by_edge, 2, s, outline);
-    centroid_point(&by_spoke, 1, s, spokes);
-}
-
-static void star_size(const star *s, const int32_t normal[3],
-                      pmesh_prediction *out)
-{
-    uint64_t square = 0, height = 0;
-    for (uint32_t i = 0; i < s->count; i++) {
-        int64_t h = 0;
-        for (int k = 0; k < 3; k++) {
-            const int64_t d = s->point[i][k] - s->mean[k];
-            square += (uint64_t)(d * d);
-            h += d / FRACTION * normal[k];
-        }
-        height += (uint64_t)(h < 0 ? -h : h) / (NORMAL_ONE / FRACTION);
-    }
-    out->size = pmesh_isqrt(square / s->count);
-    if (out->size < FRACTION)
-        out->size = FRACTION;
-
-    /* Mean height over the mean plane against the size: 2 classes an octave
-     * from 1/256 on. */
-    const uint64_t mean_height = height / s->count;
-    uint8_t rough = 0;
-    uint64_t limit = (uint64_t)out->size;
-    while (rough < PMESH_ROUGH - 1 && mean_height * 256 >= limit) {
-        limit = rough & 1 ? limit / 3 * 4 + 1 : limit * 3 / 2;
-        rough++;
-    }
-    out->rough = rough;
-}
-
-/* Mean over the ring of (mean of a member's other neighbours - member): how
- * the surface bends around here. */
-static void bend(const pmesh_codec *c, const pmesh_ring *ring, uint32_t x,
-                 int64_t out[3])
-{
-    const pmesh_mesh *m = &c->mesh;
-    int64_t sum[3] = { 0, 0, 0 };
-    int64_t used = 0;
-    for (uint32_t i = 0; i < ring->count; i++) {
-        const uint32_t y = ring->vertex[i];
-        int64_t part[3] = { 0, 0, 0 };
-        int64_t count = 0;
-        uint32_t h = m->first[y];
-        const uint32_t start = h;
-        do {
-            const uint32_t z = m->vertex[pmesh_next(h)];
-            if (z != x) {
-                for (int k = 0; k < 3; k++)
-                    part[k] += m->position[z][k];
-                count++;
-            }
-            h = pmesh_turn_left(m, h);
-        } while (h != PMESH_NONE && h != start && count < PMESH_MAX_RING);
-        if (count < 2 || h == PMESH_NONE)
-            continue;
-        for (int k = 0; k < 3; k++)
-            sum[k] += part[k] * FRACTION / count -
-                      (int64_t)m->position[y][k] * FRACTION;
-        used++;
-    }
-    for (int k = 0; k < 3; k++)
-        out[k] = used ? sum[k] / used : 0;
+    return value < -limit ? -limit : value > limit ? limit : value;
 }
 
 static uint32_t index_of(const pmesh_ring *ring, uint32_t vertex)
@@ -236,34 +26,109 @@ static uint32_t index_of(const pmesh_ring *ring, uint32_t vertex)
     return i;
 }
 
-/* The terms of the correction, relative to the ring's mean. */
-static void make_terms(const pmesh_codec *c, const star *s,
+/* ---- terms, from the ring's mean ---------------------------------------- */
+
+/* Mean over the ring of (mean of a member's other neighbours - member): how
+ * the surface bends around here. */
+static void bend(const pmesh_codec *c, const pmesh_star *s,
+                 const pmesh_ring *ring, uint32_t x, const int32_t base[3],
+                 int64_t out[3])
+{
+    const int32_t *at = c->mesh.position[x];
+    int64_t sum[3] = { 0, 0, 0 };
+    uint32_t used = 0;
+    for (uint32_t i = 0; i < ring->count; i++) {
+        const uint32_t y = ring->vertex[i], others = c->degree[y] - 1;
+        if (others < 2 || others >= PMESH_MAX_RING)
+            continue;
+        for (int k = 0; k < 3; k++) {
+            const int64_t all = (int64_t)(int32_t)c->around[y][k] - at[k] -
+                                (int64_t)others * base[k];
+            sum[k] += pmesh_share(limited(pmesh_scale(all, s->shift),
+                                          SUM_LIMIT),
+                                  others) -
+                      s->point[i][k];
+        }
+        used++;
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = used ? pmesh_share(limited(sum[k], SUM_LIMIT), used) : 0;
+}
+
+/* Straight on from the member behind half-edge h, away from where h starts:
+ * twice the member less what lies opposite in its ring. */
+static void straight_on(const pmesh_codec *c, const pmesh_star *s, uint32_t h,
+                        const int32_t base[3], int64_t out[3])
+{
+    const pmesh_mesh *m = &c->mesh;
+    const uint32_t y = m->vertex[pmesh_next(h)], n = c->degree[y];
+    uint32_t back = m->twin[h], far[2] = { 0, 0 };
+    if (n > PMESH_MAX_RING || back == PMESH_NONE)
+        return;
+    for (uint32_t i = 0; i < (n + 1) / 2; i++) {
+        far[0] = m->vertex[pmesh_next(back)];
+        back = pmesh_turn_left(m, back);
+        if (back == PMESH_NONE)
+            return;
+    }
+    far[1] = m->vertex[pmesh_next(back)];
+    if (n % 2 == 0)
+        far[0] = far[1];
+    for (int k = 0; k < 3; k++) {
+        const int64_t twice = 4 * (int64_t)m->position[y][k] -
+                              m->position[far[0]][k] - m->position[far[1]][k] -
+                              2 * (int64_t)base[k];
+        out[k] = (pmesh_scale(twice, s->shift) >> 1) - s->mean[k];
+    }
+}
+
+static void make_terms(const pmesh_codec *c, const pmesh_star *s,
                        const pmesh_ring *ring, uint32_t x, uint32_t partner,
-                       int64_t term[PMESH_PREDICT_TERMS][3])
+                       pmesh_prediction *p)
 {
     const uint32_t n = s->count, at = index_of(ring, partner);
+    const uint32_t far = (at + n / 2) % n, far2 = (at + (n + 1) / 2) % n;
     uint32_t a = at + 1 < n ? at + 1 : 0, b = at > 0 ? at - 1 : n - 1;
     if (s->open) { /* the boundary says more than the wings */
         a = 0;
         b = n - 1;
     }
     for (int k = 0; k < 3; k++) {
-        term[0][k] = -s->mean[k]; /* the partner is the base point */
-        term[1][k] = (s->point[a][k] + s->point[b][k]) / 2 - s->mean[k];
+        p->term[0][k] = -s->mean[k]; /* the partner is the base point */
+        p->term[1][k] =
+            ((s->point[a][k] + s->point[b][k]) >> 1) - s->mean[k];
+        p->term[2][k] =
+            ((s->point[far][k] + s->point[far2][k]) >> 1) - s->mean[k];
     }
-    bend(c, ring, x, term[2]);
-    star_centres(s, term[3], term[4], term[5]);
+    bend(c, s, ring, x, p->base, p->term[3]);
+    pmesh_star_centres(s, p->term[4], p->term[5]);
+    memset(p->term[6], 0, 2 * sizeof p->term[6]);
+    if (at < ring->face_count)
+        straight_on(c, s, ring->edge[at], p->base, p->term[6]);
+    if (far < ring->face_count)
+        straight_on(c, s, ring->edge[far], p->base, p->term[7]);
+
+    for (int t = 0; t < PMESH_FIT_TERMS; t++) {
+        int64_t height = 0;
+        for (int k = 0; k < 3; k++) {
+            p->term[t][k] = limited(p->term[t][k], TERM_LIMIT);
+            height += p->term[t][k] * s->normal[k];
+        }
+        p->height[t] = height >> PMESH_NORMAL_BITS;
+    }
 }
+
+/* ---- prediction --------------------------------------------------------- */
 
 /* A ring beyond the bound: splits of its neighbours made it so large. */
 static void predict_blindly(const int32_t at[3], pmesh_prediction *out)
 {
-    *out = (pmesh_prediction){ .size = 64 * FRACTION, .ring_class = 7,
+    *out = (pmesh_prediction){ .size = 64 << FRACTION_BITS, .ring_class = 7,
                                .unknown = 2,
                                .irregular = PMESH_IRREGULAR - 1,
                                .rough = PMESH_ROUGH - 1 };
     for (int k = 0; k < 3; k++)
-        out->position[k] = (int64_t)at[k] * FRACTION;
+        out->position[k] = (int64_t)at[k] * (1 << FRACTION_BITS);
 }
 
 static uint8_t ring_class(const pmesh_ring *ring)
@@ -274,36 +139,18 @@ static uint8_t ring_class(const pmesh_ring *ring)
     return (uint8_t)(n < 10 ? n - 3 : 7);
 }
 
-/* The ring's mean and the weighted terms, each weighed along the surface and
- * across it; within the bounds, as every vertex is. */
-static void add_terms(pmesh_prediction *p, const int32_t base[3],
-                      const int64_t mean[3], const int32_t bounds[3])
+/* Two classes an octave of height against size, from 1/256 on. */
+static uint8_t roughness(const pmesh_star *s)
 {
-    int64_t along[3] = { 0, 0, 0 }, across = 0;
-    for (int t = 0; t < PMESH_PREDICT_TERMS; t++) {
-        const int32_t *w = p->weight[t];
-        int64_t height = 0;
-        for (int k = 0; k < 3; k++) {
-            along[k] += w[0] * p->term[t][k];
-            height += p->term[t][k] * p->normal[k];
-        }
-        p->height[t] = height / NORMAL_ONE;
-        across += (w[1] - w[0]) * p->height[t];
-    }
-    across /= WEIGHT_ONE;
-    for (int k = 0; k < 3; k++) {
-        const int64_t x = (int64_t)base[k] * FRACTION + mean[k] +
-                          along[k] / WEIGHT_ONE +
-                          across * p->normal[k] / NORMAL_ONE;
-        const int64_t limit = (int64_t)bounds[k] * FRACTION;
-        p->position[k] = x < 0 ? 0 : x > limit ? limit : x;
-    }
+    const uint64_t part = 256 * (uint64_t)s->height / (uint64_t)(s->size + 1);
+    const unsigned bits = pmesh_bit_length(part * part);
+    return (uint8_t)(bits < PMESH_ROUGH ? bits : PMESH_ROUGH - 1);
 }
 
 /* The contexts: what is known of the ring's members. */
-static void classify(const pmesh_codec *c, const pmesh_ring *ring,
-                     uint32_t partner, uint32_t provisional,
-                     pmesh_prediction *p)
+static void classify(const pmesh_codec *c, const pmesh_star *s,
+                     const pmesh_ring *ring, uint32_t partner,
+                     uint32_t provisional, pmesh_prediction *p)
 {
     uint32_t unknown = 0, irregular = 0;
     for (uint32_t i = 0; i < ring->count; i++) {
@@ -315,72 +162,187 @@ static void classify(const pmesh_codec *c, const pmesh_ring *ring,
     p->unknown = (uint8_t)(unknown < 2 ? unknown : 2);
     p->irregular = (uint8_t)(irregular < PMESH_IRREGULAR ? irregular
                                                          : PMESH_IRREGULAR - 1);
+    p->rough = roughness(s);
+    const int64_t size = pmesh_scale(s->size, FRACTION_BITS - s->shift);
+    p->size = size < 16 ? 16 : (uint32_t)size;
+    p->shift = s->shift;
+    for (int k = 0; k < 3; k++) {
+        p->normal[k] = (int32_t)s->normal[k];
+        p->mean[k] = s->mean[k];
+    }
+}
+
+/* The mean and the weighted terms, within the bounds, as every vertex is. */
+static void add_terms(pmesh_prediction *p, const int32_t bounds[3])
+{
+    const int32_t *along = p->fit[0].weight, *across = p->fit[1].weight;
+    int64_t sum[3] = { 0, 0, 0 }, height = 0;
+    for (int t = 0; t < PMESH_FIT_TERMS; t++) {
+        for (int k = 0; k < 3; k++)
+            sum[k] += along[t] * p->term[t][k];
+        height += (int64_t)(across[t] - along[t]) * p->height[t];
+    }
+    for (int k = 0; k < 3; k++) {
+        p->corrected[k] =
+            p->mean[k] +
+            ((sum[k] + (height * p->normal[k] >> PMESH_NORMAL_BITS)) >>
+             WEIGHT_BITS);
+        const int64_t x = (int64_t)p->base[k] * (1 << FRACTION_BITS) +
+                          pmesh_scale(p->corrected[k], FRACTION_BITS - p->shift);
+        const int64_t limit = (int64_t)bounds[k] << FRACTION_BITS;
+        p->position[k] = x < 0 ? 0 : x > limit ? limit : x;
+    }
 }
 
 void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
-                   uint32_t partner, const int32_t partner_position[3],
-                   uint32_t provisional, pmesh_prediction *out)
+                   const pmesh_ring *ring, uint32_t partner,
+                   const int32_t partner_position[3], uint32_t provisional,
+                   pmesh_prediction *out)
 {
-    pmesh_ring ring;
-    star s;
-
-    if (!pmesh_ring_gather(&c->mesh, x, &ring)) {
+    pmesh_star s;
+    if (!ring) {
         predict_blindly(partner_position, out);
         return;
     }
-    star_make(&s, c, &ring, partner_position);
-    star_faces(&s);
-    star_normal(&s, out->normal);
-    star_size(&s, out->normal, out);
-    make_terms(c, &s, &ring, x, partner, out->term);
-
-    classify(c, &ring, partner, provisional, out);
-    out->weight = c->models.predict[kind][out->ring_class][out->unknown];
-    add_terms(out, partner_position, s.mean, c->bounds);
+    pmesh_star_make(&s, c, ring, partner_position);
+    memcpy(out->base, partner_position, sizeof out->base);
+    classify(c, &s, ring, partner, provisional, out);
+    make_terms(c, &s, ring, x, partner, out);
+    out->fit = c->models.predict[kind][out->ring_class][out->unknown];
+    add_terms(out, c->bounds);
 }
 
-static int64_t limited(int64_t value, int64_t limit)
+/* ---- learning ----------------------------------------------------------- */
+
+enum {
+    LARGEST_WEIGHT = 1 << 18,
+    /* What a sample counts: 2^26 / (squares of expected and actual error). */
+    WEIGHT_SCALE = 1 << 26
+};
+
+#define PULL_ALONG ((int64_t)1 << 24)
+#define PULL_ACROSS ((int64_t)1 << 27)
+
+static int32_t sample_weight(int64_t square)
 {
-    return value < -limit ? -limit : value > limit ? limit : value;
+    const int64_t w = WEIGHT_SCALE / (square + 1);
+    return (int32_t)(w < LARGEST_WEIGHT ? w : LARGEST_WEIGHT);
 }
 
-/* gain / norm <= 2 in size, as errors are limited to 2 sizes and the norm has
- * at least the size's square: after scaling, products stay below 2^54. */
-static void adjust(int32_t *weight, int64_t gain, int64_t norm)
+/* An expected error in the units of learning, squared. */
+static int64_t expected_square(const pmesh_prediction *p, uint32_t error)
 {
-    while (norm >= (int64_t)1 << 40) {
-        norm /= 4;
-        gain /= 4;
+    const int64_t e =
+        limited(pmesh_scale(error, p->shift - FRACTION_BITS - FIT_DROP),
+                TERM_LIMIT);
+    return e * e;
+}
+
+static void split_terms(const pmesh_prediction *p,
+                        int32_t along[PMESH_FIT_TERMS][3],
+                        int32_t across[PMESH_FIT_TERMS])
+{
+    for (int t = 0; t < PMESH_FIT_TERMS; t++) {
+        across[t] = (int32_t)(p->height[t] >> FIT_DROP);
+        for (int k = 0; k < 3; k++)
+            along[t][k] = (int32_t)((p->term[t][k] -
+                                     (p->height[t] * p->normal[k] >>
+                                      PMESH_NORMAL_BITS)) >> FIT_DROP);
     }
-    *weight = (int32_t)limited(*weight + gain * LEARN_RATE / norm,
-                               LARGEST_WEIGHT);
 }
 
-void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3])
+static void learn_along(const pmesh_prediction *p,
+                        int32_t f[PMESH_FIT_TERMS][3],
+                        const int32_t target[3], int32_t weight)
 {
-    const int64_t size = p->size, square = size * size;
-    int64_t error[3], height = 0, norm[2] = { 4 * square, square / 4 };
-    if (!p->weight)
+    pmesh_sample s;
+    int32_t *pair = s.pair;
+    for (int i = 0; i < PMESH_FIT_TERMS; i++) {
+        const int32_t *a = f[i];
+        for (int j = 0; j <= i; j++)
+            *pair++ = a[0] * f[j][0] + a[1] * f[j][1] + a[2] * f[j][2];
+        s.target[i] = a[0] * target[0] + a[1] * target[1] + a[2] * target[2];
+    }
+    pmesh_fit_learn(&p->fit[0], &s, weight, PULL_ALONG);
+}
+
+static void learn_across(const pmesh_prediction *p,
+                         const int32_t f[PMESH_FIT_TERMS], int32_t target,
+                         int32_t weight)
+{
+    pmesh_sample s;
+    int32_t *pair = s.pair;
+    for (int i = 0; i < PMESH_FIT_TERMS; i++) {
+        for (int j = 0; j <= i; j++)
+            *pair++ = f[i] * f[j];
+        s.target[i] = f[i] * target;
+    }
+    pmesh_fit_learn(&p->fit[1], &s, weight, PULL_ACROSS);
+}
+
+void pmesh_predict_learn(const pmesh_prediction *p, const int32_t position[3],
+                         uint32_t along, uint32_t across)
+{
+    int32_t f[PMESH_FIT_TERMS][3], h[PMESH_FIT_TERMS], target[3];
+    int64_t wanted[3], up = 0, error_up = 0, error = 0;
+    if (!p->fit)
         return;
     for (int k = 0; k < 3; k++) {
-        error[k] = limited((int64_t)position[k] * FRACTION - p->position[k],
-                           2 * size);
-        height += error[k] * p->normal[k];
+        const int64_t to =
+            pmesh_scale((int64_t)position[k] - p->base[k], p->shift);
+        const int64_t off = limited(to - p->corrected[k], TERM_LIMIT);
+        wanted[k] = limited(to - p->mean[k], TERM_LIMIT);
+        up += wanted[k] * p->normal[k];
+        error_up += off * p->normal[k];
+        error += off * off;
     }
-    height /= NORMAL_ONE;
-    for (int t = 0; t < PMESH_PREDICT_TERMS; t++) {
-        const int64_t h = p->height[t] * p->height[t];
+    up >>= PMESH_NORMAL_BITS;
+    error_up >>= PMESH_NORMAL_BITS;
+    const int64_t square_up = error_up * error_up >> 2 * FIT_DROP;
+    const int64_t square_flat =
+        limited((error >> 2 * FIT_DROP) - square_up, INT32_MAX);
+    for (int k = 0; k < 3; k++)
+        target[k] = (int32_t)((wanted[k] -
+                               (up * p->normal[k] >> PMESH_NORMAL_BITS)) >>
+                              FIT_DROP);
+    split_terms(p, f, h);
+    learn_along(p, f, target,
+                sample_weight(expected_square(p, along) +
+                              (square_flat > 0 ? square_flat : 0)));
+    learn_across(p, h, (int32_t)(up >> FIT_DROP),
+                 sample_weight(expected_square(p, across) / 2 + square_up));
+}
+
+/* For rings of any size. */
+static void shift_neighbours(pmesh_codec *c, uint32_t x, const uint32_t by[3])
+{
+    const pmesh_mesh *m = &c->mesh;
+    uint32_t h = m->first[x], last;
+    do {
+        last = pmesh_prev(h);
         for (int k = 0; k < 3; k++)
-            norm[0] += p->term[t][k] * p->term[t][k];
-        norm[0] -= h;
-        norm[1] += h;
+            c->around[m->vertex[pmesh_next(h)]][k] += by[k];
+        h = m->twin[last];
+    } while (h != PMESH_NONE && h != m->first[x]);
+    for (int k = 0; k < 3 && h == PMESH_NONE; k++)
+        c->around[m->vertex[last]][k] += by[k];
+}
+
+void pmesh_place(pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
+                 const int32_t position[3])
+{
+    int32_t *at = c->mesh.position[x];
+    uint32_t by[3];
+    for (int k = 0; k < 3; k++)
+        by[k] = (uint32_t)position[k] - (uint32_t)at[k];
+    if (!(by[0] | by[1] | by[2]))
+        return;
+    memcpy(at, position, sizeof *c->mesh.position);
+    if (!ring) {
+        shift_neighbours(c, x, by);
+        return;
     }
-    for (int t = 0; t < PMESH_PREDICT_TERMS; t++) {
-        const int64_t up = height * p->height[t];
-        int64_t all = 0;
+    for (uint32_t i = 0; i < ring->count; i++)
         for (int k = 0; k < 3; k++)
-            all += error[k] * p->term[t][k];
-        adjust(&p->weight[t][0], all - up, norm[0]);
-        adjust(&p->weight[t][1], up, norm[1]);
-    }
+            c->around[ring->vertex[i]][k] += by[k];
 }

@@ -2,6 +2,12 @@
 /*
  * predict.h - where a new vertex is expected, and how far off that may be
  * (SPEC 6.5).
+ *
+ * The prediction is the mean of the ring, corrected by a weighted sum of
+ * vectors, the terms, that tell how the surface bends around here; along the
+ * surface and across it the weights are others. They follow the stream by least
+ * squares (fit.h), apart for each size of ring and number of neighbours that
+ * have no final position yet.
  */
 #ifndef PMESH_PREDICT_H
 #define PMESH_PREDICT_H
@@ -18,29 +24,37 @@ typedef enum pmesh_predict_kind {
 typedef struct pmesh_prediction {
     int64_t position[3]; /* 1/16 grid steps */
     int32_t normal[3];   /* unit vector in 1/16384; zero if there is none */
-    uint32_t size;       /* root mean square radius of the ring, 1/16 steps */
+    uint32_t size;       /* mean radius of the ring, 1/16 steps, at least 16 */
     uint8_t ring_class;  /* < PMESH_PREDICT_CLASSES */
     uint8_t unknown;     /* provisional members: 0, 1, 2 for more */
     uint8_t irregular;   /* neighbours with other than 6 neighbours, at most 4 */
     uint8_t rough;       /* how far the ring is from plane, log classes */
-    /* What learning needs: the terms in 1/16 steps, their heights along the
-     * normal, and their weights; NULL if the ring was too large. */
-    int64_t term[PMESH_PREDICT_TERMS][3], height[PMESH_PREDICT_TERMS];
-    int32_t (*weight)[2];
+
+    /* What learning needs; in the coordinates of the star (star.h). */
+    pmesh_fit *fit; /* along, across; NULL if the ring was too large */
+    int shift;
+    int32_t base[3];
+    int64_t mean[3], corrected[3];
+    int64_t term[PMESH_FIT_TERMS][3], height[PMESH_FIT_TERMS];
 } pmesh_prediction;
 
-/* Predicts the position of x. `partner` is the other vertex of its split, and
- * `partner_position` what is known of it; members of the ring from
- * `provisional` on (by number) have no final position yet. */
+/* The position of x, whose ring is given; ring NULL: it is too large.
+ * `partner` is the other vertex of its split, and `partner_position` what is
+ * known of it; members of the ring from `provisional` on (by number) have no
+ * final position yet. */
 void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
-                   uint32_t partner, const int32_t partner_position[3],
-                   uint32_t provisional, pmesh_prediction *out);
+                   const pmesh_ring *ring, uint32_t partner,
+                   const int32_t partner_position[3], uint32_t provisional,
+                   pmesh_prediction *out);
 
-/* The position turned out to be this: one normalised step of the weights down
- * the gradient of the squared error, along and across the surface apart. */
-void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3]);
+/* The position turned out to be this, where errors of `along` and `across`
+ * (1/16 steps) were expected. */
+void pmesh_predict_learn(const pmesh_prediction *p, const int32_t position[3],
+                         uint32_t along, uint32_t across);
 
-/* Integer square root, rounded down. */
-uint32_t pmesh_isqrt(uint64_t value);
+/* Moves x, whose ring is given (NULL: too large), to a position and corrects
+ * its neighbours' sums. */
+void pmesh_place(pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
+                 const int32_t position[3]);
 
 #endif

@@ -88,6 +88,7 @@ static void rename_children(pmesh_codec *c)
     permute(m->first + first, n, 1, c->child_order, c->scratch);
     permute(m->parent + first, n, 1, c->child_order, c->scratch);
     permute(c->degree + first, n, 1, c->child_order, c->scratch);
+    permute(c->around[first], n, 3, c->child_order, c->scratch);
     permute_positions(m->position + first, n, c->child_order, c->scratch);
     if (c->sizes.moves)
         permute_positions(c->unsplit, n, c->child_order, c->scratch);

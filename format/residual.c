@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "format/residual.h"
 
+#include "format/star.h"
+
 enum {
+    FRACTION_BITS = 4,
     FRACTION = 16,
     ONE = 16384,       /* of normals and of variances relative to `along` */
     MEAN_ONE = 4096,   /* of pmesh_mean */
@@ -10,66 +13,85 @@ enum {
     LOW_MODELS = 3
 };
 
-/* Half octaves: 2 log2(value), for value >= 1. */
-static unsigned half_octave(uint32_t value)
+#define LARGEST (1u << 24) /* of expected residuals */
+
+/* Half octaves: 2 log2(value), rounded down; for value >= 1. */
+static unsigned half_octave(uint64_t value)
 {
-    unsigned n = 0;
-    uint64_t square = (uint64_t)value * value;
-    while (square >>= 1)
-        n++;
-    return n < PMESH_SCALES ? n : PMESH_SCALES - 1;
+    return pmesh_bit_length(value * value) - 1;
 }
 
-/* Codes value - round(mean) with models chosen by the expected deviation; mean
- * and deviation in 1/16. */
-static int64_t code_coordinate(pmesh_coder *coder, pmesh_residual_model *m,
-                               int64_t mean, uint32_t deviation, int64_t value)
+/* What a coordinate is coded with: its place among the three, how far off the
+ * one before was, its mean (1/16 steps) and the scale of what is left. */
+typedef struct coordinate {
+    unsigned place, far, scale;
+    int64_t mean;
+} coordinate;
+
+/* Of Golomb's bins, half a deviation wide; the rest of the bits below. */
+static uint64_t code_size(pmesh_coder *coder, pmesh_residual_model *m,
+                          const coordinate *at, uint64_t size)
 {
-    const unsigned scale = half_octave(deviation ? deviation : 1);
-    const int64_t biased = mean + FRACTION / 2;
-    const int64_t center = biased >= 0 ? biased / FRACTION
-                                       : -((-biased + FRACTION - 1) / FRACTION);
-    const int64_t part = mean - center * FRACTION; /* -8 .. 7 */
-    const unsigned lean = part < -2 ? 0 : part > 2 ? 2 : 1;
-    const int64_t r = value - center;
-
-    if (!pmesh_code_bit(coder, &m->zero[scale][lean], r != 0))
-        return center;
-    const unsigned negative = pmesh_code_bit(coder, &m->sign[scale][lean],
-                                             r < 0);
-    const uint64_t size = (uint64_t)(r < 0 ? -r : r) - 1;
-
-    /* Golomb with bins of half the deviation: deviation is 2^(scale/2 - 4). */
-    const unsigned shift = scale > 11 ? scale / 2 - 5 : 0;
+    pmesh_bit *any = m->any[at->scale].unary;
+    pmesh_bit *here = m->here[at->scale][at->place][at->far].unary;
+    /* The deviation is 2^(scale/2 - 4) steps. */
+    const unsigned shift = at->scale > 11 ? at->scale / 2 - 5 : 0;
     const uint64_t bin = size >> shift;
-    uint32_t q = 0;
-    while (q < PMESH_UNARY && pmesh_code_bit(coder, &m->unary[scale][q],
-                                             bin > q))
+    uint32_t q = 0, node = 0;
+    while (q < PMESH_UNARY &&
+           pmesh_code_bit_twice(coder, &any[q], &here[q], bin > q))
         q++;
     if (q == PMESH_UNARY)
         q += pmesh_code_number(coder, &m->escape,
                                (uint32_t)(bin - PMESH_UNARY));
     uint64_t result = q;
-    unsigned node = 0;
     for (unsigned i = shift; i-- > 0;) {
         const unsigned bit = size >> i & 1;
         unsigned got;
         if (node < LOW_MODELS && shift - i <= 2) {
-            got = pmesh_code_bit(coder, &m->low[scale][node], bit);
+            got = pmesh_code_bit(coder, &m->low[at->scale][node], bit);
             node = 1 + got;
         } else {
             got = pmesh_code_raw(coder, 1, bit);
         }
         result = result << 1 | got;
     }
-    const int64_t magnitude = (int64_t)(result + 1);
-    return negative ? center - magnitude : center + magnitude;
+    return result;
+}
+
+/* Codes the difference from the rounded mean. */
+static int64_t code_coordinate(pmesh_coder *coder, pmesh_residual_model *m,
+                               const coordinate *at, int64_t value)
+{
+    pmesh_residual_bits *any = &m->any[at->scale];
+    pmesh_residual_bits *here = &m->here[at->scale][at->place][at->far];
+    const int64_t center = (at->mean + FRACTION / 2) >> FRACTION_BITS;
+    const int64_t part = at->mean - center * FRACTION; /* -8 .. 7 */
+    const unsigned lean = part < -2 ? 0 : part > 2 ? 2 : 1;
+    const int64_t r = value - center;
+
+    if (!pmesh_code_bit_twice(coder, &any->zero[lean], &here->zero[lean],
+                              r != 0))
+        return center;
+    const unsigned negative = pmesh_code_bit_twice(
+        coder, &any->sign[lean], &here->sign[lean], r < 0);
+    const int64_t size = 1 + (int64_t)code_size(coder, m, at,
+                                                (uint64_t)(r < 0 ? -r : r) - 1);
+    return negative ? center - size : center + size;
+}
+
+/* Octaves from half the deviation on. */
+static unsigned how_far(int64_t off, unsigned scale)
+{
+    const uint64_t size = (uint64_t)(off < 0 ? -off : off);
+    const int over = size ? (int)half_octave(size) - (int)scale + 4 : 0;
+    return over < 2 ? 0 : over < 4 ? 1 : over < 6 ? 2 : PMESH_FAR - 1;
 }
 
 static uint32_t expected(const pmesh_mean *m, uint32_t size)
 {
     const uint64_t e = (uint64_t)m->value * size / MEAN_ONE;
-    return e < 1 ? 1 : e > (1u << 28) ? 1u << 28 : (uint32_t)e;
+    return e < 1 ? 1 : e > LARGEST ? LARGEST : (uint32_t)e;
 }
 
 static void learn(pmesh_mean *m, uint64_t seen, uint32_t size)
@@ -127,17 +149,23 @@ static gauss gauss_make(const int32_t normal[3], const int axis[3],
     return g;
 }
 
-/* Mean and deviation of coordinate k given the residuals d of those before;
+static unsigned scale_of(uint64_t square)
+{
+    const unsigned scale = square ? pmesh_bit_length(square) - 1 : 0;
+    return scale < PMESH_SCALES ? scale : PMESH_SCALES - 1;
+}
+
+/* Mean and scale of coordinate k given the residuals d of those before;
  * everything in 1/16 grid steps. */
 static int64_t gauss_given(const gauss *g, int k, const int64_t d[3],
-                           uint32_t *deviation)
+                           unsigned *scale)
 {
     const int64_t *n = g->n;
+    const uint64_t along = (uint64_t)g->along * g->along; /* <= 2^48 */
     if (k == 2) {
         const int64_t t = (n[0] * d[0] + n[1] * d[1]) / ONE;
         const int64_t p = ONE + g->kappa * n[2] / ONE * n[2] / ONE;
-        *deviation = (uint32_t)((uint64_t)g->along * 128 /
-                                pmesh_isqrt((uint64_t)p));
+        *scale = scale_of(along * ONE / (uint64_t)p);
         return -(g->kappa * n[2] / ONE * t) / p;
     }
     const int64_t least = ONE / 4096;
@@ -151,9 +179,22 @@ static int64_t gauss_given(const gauss *g, int k, const int64_t d[3],
                               both * both / variance;
         variance = given < least ? least : given;
     }
-    *deviation = (uint32_t)((uint64_t)g->along *
-                            pmesh_isqrt((uint64_t)variance) / 128);
+    *scale = scale_of(along * (uint64_t)variance / ONE);
     return mean;
+}
+
+/* Learns from the outcome: d by coordinates, in coding order. */
+static void learn_errors(const gauss *g, const int64_t d[3],
+                         pmesh_mean *along, pmesh_mean *across, uint32_t size)
+{
+    int64_t height = 0, flat[3];
+    for (int k = 0; k < 3; k++)
+        height += d[k] * g->n[k];
+    height /= ONE;
+    for (int k = 0; k < 3; k++)
+        flat[k] = d[k] - height * g->n[k] / ONE;
+    learn(along, (uint64_t)pmesh_rough_length(flat) * 181 / 256, size);
+    learn(across, (uint64_t)(height < 0 ? -height : height), size);
 }
 
 bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
@@ -163,33 +204,27 @@ bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
     pmesh_mean *along =
         &m->along[which][p->ring_class][p->unknown][p->irregular];
     pmesh_mean *across = &m->across[which][p->rough][p->unknown];
+    const uint32_t wide = expected(along, p->size);
+    const uint32_t high = expected(across, p->size);
+    coordinate at = { .far = 0 };
     int axis[3];
     int64_t d[3] = { 0, 0, 0 };
 
     axis_order(p->normal, axis);
-    const gauss g = gauss_make(p->normal, axis, expected(along, p->size),
-                               expected(across, p->size));
+    const gauss g = gauss_make(p->normal, axis, wide, high);
     for (int k = 0; k < 3; k++) {
         const int a = axis[k];
-        uint32_t deviation;
-        const int64_t mean = p->position[a] + gauss_given(&g, k, d, &deviation);
-        const int64_t value = code_coordinate(coder, &m->residual[which], mean,
-                                              deviation, position[a]);
+        at.place = (unsigned)k;
+        at.mean = p->position[a] + gauss_given(&g, k, d, &at.scale);
+        const int64_t value =
+            code_coordinate(coder, &m->residual[which], &at, position[a]);
         if (value < 0 || value > c->bounds[a])
             return false;
         position[a] = (int32_t)value;
         d[k] = value * FRACTION - p->position[a];
+        at.far = how_far(value * FRACTION - at.mean, at.scale);
     }
-
-    int64_t height = 0;
-    uint64_t square = 0;
-    for (int k = 0; k < 3; k++) {
-        height += d[k] * g.n[k];
-        square += (uint64_t)(d[k] * d[k]);
-    }
-    const uint64_t up = (uint64_t)(height < 0 ? -height : height) / ONE;
-    const uint64_t flat = square > up * up ? square - up * up : 0;
-    learn(along, (uint64_t)pmesh_isqrt(flat) * 181 / 256, p->size);
-    learn(across, up, p->size);
+    learn_errors(&g, d, along, across, p->size);
+    pmesh_predict_learn(p, position, wide, high);
     return true;
 }
