@@ -39,6 +39,7 @@ dec_obj := $(call obj,$(wildcard format/*.c decoder/*.c))
 lib_obj := $(dec_obj) $(call obj,$(wildcard encoder/*.c))
 tool_obj := $(call obj,$(wildcard tools/*.c tools/*.cpp))
 unit_obj := $(call obj,$(units)) $(filter-out $(B)/tools/pmesh.o,$(tool_obj))
+golden := $(B)/golden_bake $(B)/golden_decode
 libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
 
 ## all: libraries and program (default)
@@ -49,6 +50,9 @@ $(B)/libpmesh-dec.a: $(dec_obj)
 $(B)/libpmesh.so: $(lib_obj)
 $(B)/pmesh: $(tool_obj) $(B)/libpmesh.a
 $(B)/unit: $(unit_obj) $(B)/libpmesh.a
+$(B)/golden_bake: $(call obj,tests/golden/golden_bake.c \
+  tests/golden/golden_mesh.c tests/unit/shapes.c tools/trig.c) $(B)/libpmesh.a
+$(B)/golden_decode: $(B)/tests/golden/golden_decode.o $(B)/libpmesh-dec.a
 $(libs) $(B)/pmesh $(B)/unit: $(B)/objects.list
 
 inputs = $(filter %.o %.a,$^)
@@ -59,6 +63,9 @@ $(B)/%.so:
 	$(quiet)$(CC) -shared -Wl,-soname,$(soname) $(inputs) $(link_flags) -lm -o $@
 $(B)/pmesh $(B)/unit:
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
+
+$(golden):
+	$(quiet)$(CC) $(inputs) $(link_flags) -lm -o $@
 
 $(B)/%.o: %.c $(B)/c.flags
 	@mkdir -p $(@D)
@@ -98,7 +105,7 @@ test: deps
 
 ## check: the same without installing anything
 check:
-	+@$(submake) all $(B)/unit
+	+@$(submake) all $(B)/unit $(golden)
 	@tests/run.sh $(B)
 
 ## unit: only the unit tests; T=name selects some
@@ -117,6 +124,15 @@ check-headers:
 check-symbols: $(libs)
 	@tests/check-symbols.sh $(B)
 
+## check-cross: the same results on other compilers and machines (tests/cross)
+check-cross: cross-deps
+	@tests/cross/all.sh build/cross
+
+## golden: write tests/golden anew; only for another version of the format
+golden: $(golden)
+	$(B)/golden_bake tests/golden
+	$(B)/golden_decode tests/golden/*.pmesh >tests/golden/hashes.txt
+
 ## bench: size, quality and time against other programs (tests/bench)
 bench: bench-deps
 	+@$(submake) all $(B)/bench_simplify
@@ -130,6 +146,9 @@ deps:
 ## bench-deps: those that `make bench` needs
 bench-deps:
 	@tests/install-deps.sh build bench
+## cross-deps: those that `make check-cross` needs
+cross-deps:
+	@tests/install-deps.sh cross
 
 headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h
 lib := $(DESTDIR)$(LIBDIR)
@@ -167,5 +186,6 @@ help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: all demo test check unit check-deps check-headers check-symbols bench
-.PHONY: deps bench-deps install uninstall clean help FORCE
+.PHONY: check-cross golden deps bench-deps cross-deps install uninstall clean
+.PHONY: help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
