@@ -40,6 +40,7 @@ lib_obj := $(dec_obj) $(call obj,$(wildcard encoder/*.c))
 tool_obj := $(call obj,$(wildcard tools/*.c tools/*.cpp))
 shared_obj := $(filter-out $(B)/tools/pmesh.o,$(tool_obj))
 unit_obj := $(call obj,$(units)) $(shared_obj)
+golden := $(B)/golden_bake $(B)/golden_decode
 libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
 
 ## all: libraries and program (default)
@@ -51,6 +52,9 @@ $(B)/libpmesh.so: $(lib_obj)
 $(B)/pmesh: $(tool_obj) $(B)/libpmesh.a
 $(B)/unit: $(unit_obj) $(B)/libpmesh.a
 $(B)/train: $(B)/tests/train/train.o $(shared_obj) $(B)/libpmesh.a
+$(B)/golden_bake: $(call obj,tests/golden/golden_bake.c \
+  tests/golden/golden_mesh.c tests/unit/shapes.c tools/trig.c) $(B)/libpmesh.a
+$(B)/golden_decode: $(B)/tests/golden/golden_decode.o $(B)/libpmesh-dec.a
 $(libs) $(B)/pmesh $(B)/unit $(B)/train: $(B)/objects.list
 
 inputs = $(filter %.o %.a,$^)
@@ -61,6 +65,9 @@ $(B)/%.so:
 	$(quiet)$(CC) -shared -Wl,-soname,$(soname) $(inputs) $(link_flags) -lm -o $@
 $(B)/pmesh $(B)/unit $(B)/train:
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
+
+$(golden):
+	$(quiet)$(CC) $(inputs) $(link_flags) -lm -o $@
 
 $(B)/%.o: %.c $(B)/c.flags
 	@mkdir -p $(@D)
@@ -100,7 +107,7 @@ test: deps
 
 ## check: the same without installing anything
 check:
-	+@$(submake) all $(B)/unit
+	+@$(submake) all $(B)/unit $(golden)
 	@tests/run.sh $(B)
 
 ## unit: only the unit tests; T=name selects some
@@ -123,6 +130,15 @@ check-headers:
 check-symbols: $(libs)
 	@tests/check-symbols.sh $(B)
 
+## check-cross: the same results on other compilers and machines (tests/cross)
+check-cross: cross-deps
+	@tests/cross/all.sh build/cross
+
+## golden: write tests/golden anew; only for another version of the format
+golden: $(golden)
+	$(B)/golden_bake tests/golden
+	$(B)/golden_decode tests/golden/*.pmesh >tests/golden/hashes.txt
+
 ## bench: size, quality and time against other programs (tests/bench)
 bench: bench-deps
 	+@$(submake) all $(B)/bench_simplify
@@ -136,6 +152,9 @@ deps:
 ## bench-deps: those that `make bench` needs
 bench-deps:
 	@tests/install-deps.sh build bench
+## cross-deps: those that `make check-cross` needs
+cross-deps:
+	@tests/install-deps.sh cross
 
 headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h
 lib := $(DESTDIR)$(LIBDIR)
@@ -173,5 +192,6 @@ help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: all demo test check unit check-deps check-headers check-symbols bench
-.PHONY: deps bench-deps install uninstall clean help FORCE
+.PHONY: check-cross golden deps bench-deps cross-deps install uninstall clean
+.PHONY: help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

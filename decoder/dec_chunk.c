@@ -68,11 +68,12 @@ static uint64_t aligned(uint64_t size)
 }
 
 /* Codec, view, payload buffer and names, in this order. */
-static uint64_t measure(const pmesh_header_chunk *h, uint64_t part[4])
+static uint64_t measure(pmesh_codec *codec, const pmesh_header_chunk *h,
+                        uint64_t part[4])
 {
     const uint32_t payload =
         h->chunk_size > h->names_size ? h->chunk_size : h->names_size;
-    part[0] = aligned(pmesh_codec_bind(NULL, &h->sizes, NULL));
+    part[0] = aligned(pmesh_codec_bind(codec, &h->sizes, NULL));
     part[1] = aligned(dec_view_bind(NULL, h, NULL));
     part[2] = aligned(payload);
     part[3] = aligned((uint64_t)h->names_size + 1);
@@ -83,7 +84,7 @@ static pmesh_status allocate(pmesh_decoder *dec)
 {
     const pmesh_header_chunk *h = &dec->header;
     uint64_t part[4];
-    dec->block_size = measure(h, part);
+    dec->block_size = measure(&dec->codec, h, part);
     if (h->sizes.faces > dec->config.max_faces ||
         dec->block_size > dec->config.max_memory ||
         dec->block_size > SIZE_MAX)

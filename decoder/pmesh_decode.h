@@ -21,7 +21,8 @@
  * corners next to a split are rewritten. With subset placement a vertex never
  * changes once it is there.
  *
- * Two allocations: the handle, and one block when the header is known.
+ * Two allocations: the handle, and one block when the header is known. At most
+ * 64 KiB of stack.
  * No globals, threads, files, or floating point before dequantisation: the
  * result depends on the bytes alone, on every compiler and CPU.
  */

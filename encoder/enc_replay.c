@@ -212,7 +212,7 @@ static bool allocate_codec(enc_replay *r)
             splits < PMESH_MAX_BLOCK_SPLITS ? splits : PMESH_MAX_BLOCK_SPLITS,
         .block_wedges = m->value_count ? wedge_room(m) : 0
     };
-    r->block_size = pmesh_codec_bind(NULL, &sizes, NULL);
+    r->block_size = pmesh_codec_bind(&r->codec, &sizes, NULL);
     r->block = pmesh_alloc(&r->allocator, 1, (size_t)r->block_size);
     if (!r->block)
         return false;

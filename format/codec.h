@@ -119,8 +119,8 @@ typedef struct pmesh_codec {
 
 /*
  * Lays the arrays out in `block` (aligned for any object, zeroed) and makes an
- * empty mesh and fresh models. Returns the bytes needed; with block NULL does
- * nothing else. The sizes must be within the limits of layout.h.
+ * empty mesh and fresh models. Returns the bytes needed; with block NULL that is
+ * all, and `c` is not usable. The sizes must be within the limits of layout.h.
  */
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *sizes,
                           void *block);

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Usage: tests/install-deps.sh [--check] GROUP...   (groups: build test bench)
+# Usage: tests/install-deps.sh [--check] GROUP...   (groups: build test bench cross)
 #
 # Installs the Debian packages of what is missing, by apt-get as root or
 # through sudo. If nothing is missing it does nothing, offline too. --check
@@ -45,6 +45,27 @@ group_bench() {
     need libcgal-dev header CGAL/version.h
     need libeigen3-dev header eigen3/Eigen/Core
     need time test -x /usr/bin/time
+}
+
+# A static program of that machine's C library.
+links() {
+    echo 'int main(void) { return 0; }' | "$@" -x c - -o /dev/null
+}
+
+group_cross() {
+    need gcc program gcc
+    need clang program clang
+    need gcc-i686-linux-gnu program i686-linux-gnu-gcc
+    need libc6-dev-i386-cross links i686-linux-gnu-gcc -static
+    need gcc-aarch64-linux-gnu program aarch64-linux-gnu-gcc
+    need libc6-dev-arm64-cross links aarch64-linux-gnu-gcc -static
+    need gcc-s390x-linux-gnu program s390x-linux-gnu-gcc
+    need libc6-dev-s390x-cross links s390x-linux-gnu-gcc -static
+    need qemu-user program qemu-s390x
+    need lld program wasm-ld
+    need wasi-libc test -e /usr/lib/wasm32-wasi/libc.a
+    need libclang-rt-dev-wasm32 links clang --target=wasm32-wasi
+    need nodejs program node
 }
 
 only_check=false

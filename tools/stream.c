@@ -13,7 +13,7 @@
 #define MEMORY_PER_BYTE 16384u
 #define MEMORY_MOST ((uint64_t)8 << 30)
 
-#define HEADER_STEP 256u /* bytes fed at a time in search of the header's end */
+#define HEADER_STEP 256u /* bytes fed at a time in search of the base's end */
 
 static uint64_t memory_bound(uint64_t size)
 {
@@ -91,7 +91,9 @@ int stream_open_header(const file_data *data, stream *out, asset_error *error)
 
     if (!start(data, out, error))
         return CMD_IO;
-    while (status == PMESH_NEED_DATA && !out->has_header && at < data->size) {
+    /* Names stand between the header and the base mesh. */
+    while (status == PMESH_NEED_DATA && out->progress.levels == 0 &&
+           at < data->size) {
         const size_t rest = data->size - at;
         const size_t size = rest < HEADER_STEP ? rest : HEADER_STEP;
         status = pmesh_decoder_feed(out->decoder, data->bytes + at, size);

@@ -29,8 +29,8 @@ typedef struct stream {
  */
 int stream_open(const file_data *data, stream *out, asset_error *error);
 
-/* Reads no further than the header: counts and level table. A file too short
- * for it returns CMD_STREAM. */
+/* Reads no further than the base mesh: counts, level table and names. A file
+ * too short for the header returns CMD_STREAM. */
 int stream_open_header(const file_data *data, stream *out, asset_error *error);
 
 void stream_close(stream *s);

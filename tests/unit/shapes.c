@@ -1,11 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 #include "tests/unit/shapes.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "tools/trig.h"
+
 static const double pi = 3.14159265358979323846;
+
+/* Of radians; unlike the C library's the same on every machine. */
+static double sine(double x)
+{
+    return trig_sin(x / (2 * pi));
+}
+
+static double cosine(double x)
+{
+    return trig_cos(x / (2 * pi));
+}
 
 uint32_t shape_random(uint32_t *seed, uint32_t below)
 {
@@ -53,7 +65,8 @@ static float *add_attribute(shape_mesh *s, pmesh_attribute_kind kind,
 
 static double bump(double x, double y, uint32_t seed)
 {
-    return 0.1 * sin(5 * x + seed) * cos(4 * y) + 0.02 * sin(23 * x + 19 * y);
+    return 0.1 * sine(5 * x + seed) * cosine(4 * y) +
+           0.02 * sine(23 * x + 19 * y);
 }
 
 /* A (rows x columns) grid of quads, joined across columns, and across rows too
@@ -80,11 +93,11 @@ static shape_mesh *make_torus(uint32_t n, uint32_t seed)
     for (uint32_t r = 0; r < n; r++)
         for (uint32_t c = 0; c < n; c++) {
             const double a = 2 * pi * r / n, b = 2 * pi * c / n;
-            const double k = 0.4 + bump(cos(a), sin(b), seed);
+            const double k = 0.4 + bump(cosine(a), sine(b), seed);
             double *p = s->positions + 3 * ((size_t)r * n + c);
-            p[0] = (1 + k * cos(b)) * cos(a);
-            p[1] = (1 + k * cos(b)) * sin(a);
-            p[2] = k * sin(b);
+            p[0] = (1 + k * cosine(b)) * cosine(a);
+            p[1] = (1 + k * cosine(b)) * sine(a);
+            p[2] = k * sine(b);
         }
     grid_faces(s, n, n, n, true, true);
     return s;
@@ -128,7 +141,8 @@ static shape_mesh *make_sphere(uint32_t n, uint32_t seed)
             const size_t i = (size_t)r * columns + c;
             const double a = pi * (r + 0.5) / (rows + 1);
             const double b = 2 * pi * c / columns;
-            const double d[3] = { sin(a) * cos(b), sin(a) * sin(b), cos(a) };
+            const double d[3] = { sine(a) * cosine(b), sine(a) * sine(b),
+                                  cosine(a) };
             const double k = 1 + bump(d[0] + d[2], d[1], seed);
             for (int j = 0; j < 3; j++) {
                 s->positions[3 * i + (size_t)j] = k * d[j];

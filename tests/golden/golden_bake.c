@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * golden_bake DIR [THREADS] - writes the golden files: small files that
+ * together reach every element of the format but two: a Draco base, which needs
+ * a hook, and prediction in a ring of more than 48 members (SPEC 6.5), which no
+ * mesh was found to lead the encoder to.
+ *
+ * They name what a decoder of this format version must read, so they change
+ * only with the version (0 is a draft, and changes with every byte).
+ */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "format/crc32c.h"
+#include "format/cursor.h"
+#include "format/layout.h"
+#include "tests/golden/golden_mesh.h"
+
+typedef struct golden_case {
+    const char *name;
+    int mesh;
+    uint32_t size, base_faces; /* of pmesh_encoder_config; 1: all the way */
+    pmesh_profile profile;
+    pmesh_placement placement;
+    uint8_t bits;
+} golden_case;
+
+static const golden_case cases[] = {
+    { "triangle", GOLDEN_TRIANGLE, 3, 1, PMESH_BALANCED, PMESH_SUBSET, 4 },
+    { "closed", SHAPE_TORUS, 72, 1, PMESH_COMPACT, PMESH_SUBSET, 12 },
+    { "closed-moving", SHAPE_TORUS, 16, 40, PMESH_QUALITY, PMESH_OPTIMAL, 21 },
+    { "open", SHAPE_TERRAIN, 20, 20, PMESH_BALANCED, PMESH_SUBSET, 14 },
+    { "open-moving", SHAPE_TERRAIN, 14, 1, PMESH_QUALITY, PMESH_OPTIMAL, 24 },
+    { "seam", SHAPE_SPHERE, 12, 30, PMESH_BALANCED, PMESH_SUBSET, 13 },
+    { "seam-moving", SHAPE_SPHERE, 10, 1, PMESH_QUALITY, PMESH_OPTIMAL, 16 },
+    { "facets", SHAPE_FACETS, 10, 1, PMESH_COMPACT, PMESH_SUBSET, 10 },
+    { "facets-moving", SHAPE_FACETS, 9, 30, PMESH_QUALITY, PMESH_OPTIMAL, 4 },
+    { "materials", GOLDEN_PATCHES, 18, 1, PMESH_BALANCED, PMESH_SUBSET, 8 },
+    { "pieces", SHAPE_PIECES, 40, 20, PMESH_BALANCED, PMESH_SUBSET, 11 },
+    { "cuts", SHAPE_SOUP, 40, 1, PMESH_BALANCED, PMESH_OPTIMAL, 7 },
+    { "spikes", GOLDEN_SPIKES, 24, 1, PMESH_BALANCED, PMESH_SUBSET, 24 },
+    { "hub", GOLDEN_FAN, 55, 1, PMESH_QUALITY, PMESH_SUBSET, 4 },
+    { "hubs", GOLDEN_SPINDLE, 60, 400, PMESH_BALANCED, PMESH_SUBSET, 9 },
+    { "hubs-moving", GOLDEN_SPINDLE, 60, 1, PMESH_COMPACT, PMESH_OPTIMAL, 15 },
+    { "blocks", GOLDEN_CHANNELS, 36, 1350, PMESH_COMPACT, PMESH_OPTIMAL, 24 },
+};
+
+/* Puts a chunk that no decoder knows in front of the end chunk, where it moves
+ * no byte that the level table counts. */
+static void insert_skippable(shape_bytes *b)
+{
+    enum { END_SIZE = 2 + PMESH_CRC_SIZE };
+    uint8_t chunk[] = { 0x85, 3, 'a', 'b', 'c', 0, 0, 0, 0 };
+    const uint32_t crc = pmesh_crc32c(0, chunk, 5);
+    for (int i = 0; i < PMESH_CRC_SIZE; i++)
+        chunk[5 + i] = (uint8_t)(crc >> (8 * i));
+    b->data = realloc(b->data, b->size + sizeof chunk);
+    uint8_t *end = b->data + b->size - END_SIZE;
+    memmove(end + sizeof chunk, end, END_SIZE);
+    memcpy(end, chunk, sizeof chunk);
+    b->size += sizeof chunk;
+}
+
+/* Notes in seen[] the types of the chunks. */
+static void note_chunks(const shape_bytes *b, unsigned char seen[256])
+{
+    pmesh_cursor in = pmesh_cursor_make(b->data, b->size);
+    pmesh_get(&in, PMESH_SIGNATURE_SIZE);
+    while (in.next < in.end && !in.overrun) {
+        seen[pmesh_get_u8(&in)] = 1;
+        for (uint64_t n = pmesh_get_varint(&in) + PMESH_CRC_SIZE; n > 0; n--)
+            pmesh_get_u8(&in);
+    }
+}
+
+static int bake(const golden_case *g, uint32_t threads, shape_bytes *out)
+{
+    golden_mesh mesh;
+    pmesh_encode_report report;
+    pmesh_encoder_config config = pmesh_encoder_config_default();
+    config.profile = g->profile;
+    config.placement = g->placement;
+    config.position_bits = g->bits;
+    config.base_faces = g->base_faces;
+    config.threads = threads;
+    golden_mesh_make(&mesh, g->mesh, g->size);
+    mesh.shape->input = mesh.input;
+    const pmesh_status status = shape_bake(mesh.shape, &config, out, &report);
+    golden_mesh_free(&mesh);
+    if (status != PMESH_OK)
+        fprintf(stderr, "%s: %s\n", g->name, pmesh_status_text(status));
+    else if (!strcmp(g->name, "blocks"))
+        insert_skippable(out);
+    return status == PMESH_OK;
+}
+
+static int write_file(const char *dir, const char *name, const shape_bytes *b)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s.pmesh", dir, name);
+    FILE *out = fopen(path, "wb");
+    const int good = out && fwrite(b->data, 1, b->size, out) == b->size;
+    if (!out || fclose(out) != 0 || !good) {
+        perror(path);
+        return 0;
+    }
+    return 1;
+}
+
+/* A change of the encoder must not silently thin out the set. */
+static int is_complete(const unsigned char seen[256])
+{
+    static const unsigned char wanted[] = {
+        PMESH_CHUNK_HEADER,     PMESH_CHUNK_BASE, PMESH_CHUNK_BLOCK,
+        PMESH_CHUNK_BLOCK_LAST, PMESH_CHUNK_END,  PMESH_CHUNK_NAMES
+    };
+    for (size_t i = 0; i < sizeof wanted; i++)
+        if (!seen[wanted[i]]) {
+            fprintf(stderr, "no golden file has a chunk of type %u\n",
+                    wanted[i]);
+            return 0;
+        }
+    return 1;
+}
+
+int main(int argc, char **argv)
+{
+    unsigned char seen[256] = { 0 };
+    if (argc < 2 || argc > 3) {
+        fprintf(stderr, "usage: golden_bake DIR [THREADS]\n");
+        return 2;
+    }
+    const uint32_t threads =
+        argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        shape_bytes bytes;
+        if (!bake(&cases[i], threads, &bytes) ||
+            !write_file(argv[1], cases[i].name, &bytes))
+            return 1;
+        note_chunks(&bytes, seen);
+        free(bytes.data);
+    }
+    return !is_complete(seen);
+}
