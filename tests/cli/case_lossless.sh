@@ -29,7 +29,7 @@ facets() {
 }
 
 for options in '' '--placement optimal' '--position-bits 8' \
-    '--position-bits 24'; do
+    '--base draco' '--position-bits 24'; do
     # shellcheck disable=SC2086 # words on purpose
     check "bake --lossless $options" 0 \
         bake "$torus" -o a.pmesh --lossless $options --json
