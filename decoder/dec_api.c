@@ -90,13 +90,15 @@ pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
         .material_count = h->sizes.material_count,
         .attribute_count = h->attribute_count,
         .level_count = h->level_count,
+        .exact_bytes = h->exact_size,
         .memory = dec->block_size,
     };
     memcpy(out->bounds, h->bounds, sizeof out->bounds);
     memcpy(out->attributes, h->attributes, sizeof out->attributes);
     for (uint32_t i = 0; i < h->level_count; i++)
         out->levels[i] = level_of(dec, i);
-    out->bytes = out->levels[h->level_count - 1].bytes + END_CHUNK_SIZE;
+    out->bytes = out->levels[h->level_count - 1].bytes + h->exact_size +
+                 END_CHUNK_SIZE;
     return PMESH_OK;
 }
 
@@ -106,6 +108,7 @@ pmesh_progress_state pmesh_decoder_progress(const pmesh_decoder *dec)
         .bytes = dec->whole,
         .faces = dec->has_base ? dec_faces_at(dec, dec->view.decoded) : 0,
         .levels = dec->levels,
+        .exact_vertices = dec->exact.count,
         .complete = dec->stage == DEC_END && dec->error.status >= 0
     };
 }
@@ -198,6 +201,20 @@ static uint8_t *tuple(void *dst, size_t stride, size_t packed, uint32_t i)
     return (uint8_t *)dst + (size_t)i * (stride ? stride : packed);
 }
 
+/* Mesh vertex v, shown at grid point q. Where parents move, only those that
+ * have come to rest are exact. */
+static void position_of(const pmesh_decoder *dec, uint32_t v, const int32_t *q,
+                        float xyz[3])
+{
+    if (v < dec->exact.count &&
+        memcmp(q, dec->codec.mesh.position[v], 3 * sizeof *q) == 0) {
+        memcpy(xyz, dec->exact.position[v], 3 * sizeof *xyz);
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        xyz[k] = (float)pmesh_grid_dequantize(&dec->header.grid, k, q[k]);
+}
+
 pmesh_status pmesh_decoder_copy_positions(const pmesh_decoder *dec, float *dst,
                                           size_t stride)
 {
@@ -210,9 +227,7 @@ pmesh_status pmesh_decoder_copy_positions(const pmesh_decoder *dec, float *dst,
     for (uint32_t i = 0; i < view.vertex_count; i++) {
         const uint32_t v = view.positions_of ? view.positions_of[i] : i;
         float xyz[3];
-        for (int k = 0; k < 3; k++)
-            xyz[k] = (float)pmesh_grid_dequantize(
-                &dec->header.grid, k, view.positions[3 * (size_t)v + (size_t)k]);
+        position_of(dec, v, view.positions + 3 * (size_t)v, xyz);
         memcpy(tuple(dst, stride, sizeof xyz, i), xyz, sizeof xyz);
     }
     return PMESH_OK;

@@ -18,6 +18,13 @@ static bool all_levels(const pmesh_decoder *dec)
     return dec->has_base && dec->levels == dec->header.level_count;
 }
 
+/* Of a lossless file: there are vertices without their exact position. */
+static bool lacks_exact(const pmesh_decoder *dec)
+{
+    return dec->header.exact_size > 0 &&
+           dec->exact.count < dec->header.sizes.vertices;
+}
+
 pmesh_status dec_chunk_begin(pmesh_decoder *dec)
 {
     const uint8_t type = dec->type;
@@ -33,7 +40,7 @@ pmesh_status dec_chunk_begin(pmesh_decoder *dec)
         return corrupt(dec, "SPEC 5.2: the first chunk is not the header");
     if (dec->skipping)
         return PMESH_OK;
-    if (type > PMESH_CHUNK_NAMES || type == 0)
+    if (type > PMESH_CHUNK_POSITIONS || type == 0)
         return dec_fail(dec, PMESH_E_VERSION,
                         "SPEC 5.2: an unknown critical chunk");
     if (type == PMESH_CHUNK_NAMES)
@@ -51,10 +58,13 @@ pmesh_status dec_chunk_begin(pmesh_decoder *dec)
     if (type != PMESH_CHUNK_BASE && !dec->has_base)
         return corrupt(dec, "SPEC 5.2: a chunk before the base mesh");
     if (type == PMESH_CHUNK_END)
-        return all_levels(dec) && dec->size == 0
+        return all_levels(dec) && !lacks_exact(dec) && dec->size == 0
                    ? PMESH_OK
                    : corrupt(dec, "SPEC 5.2: the end comes too early");
-    if (type != PMESH_CHUNK_BASE && all_levels(dec))
+    if (type == PMESH_CHUNK_POSITIONS && !(all_levels(dec) && lacks_exact(dec)))
+        return corrupt(dec, "SPEC 5.2: a positions chunk out of place");
+    if ((type == PMESH_CHUNK_BLOCK || type == PMESH_CHUNK_BLOCK_LAST) &&
+        all_levels(dec))
         return corrupt(dec, "SPEC 5.2: more levels than the header declares");
     return dec->size <= dec->header.chunk_size
                ? PMESH_OK
@@ -67,9 +77,9 @@ static uint64_t aligned(uint64_t size)
     return (size + 15) / 16 * 16;
 }
 
-/* Codec, view, payload buffer and names, in this order. */
+/* Codec, view, payload buffer, names and exact positions, in this order. */
 static uint64_t measure(pmesh_codec *codec, const pmesh_header_chunk *h,
-                        uint64_t part[4])
+                        uint64_t part[5])
 {
     const uint32_t payload =
         h->chunk_size > h->names_size ? h->chunk_size : h->names_size;
@@ -77,13 +87,17 @@ static uint64_t measure(pmesh_codec *codec, const pmesh_header_chunk *h,
     part[1] = aligned(dec_view_bind(NULL, h, NULL));
     part[2] = aligned(payload);
     part[3] = aligned((uint64_t)h->names_size + 1);
-    return part[0] + part[1] + part[2] + part[3];
+    part[4] = h->exact_size == 0
+                  ? 0
+                  : pmesh_exact_bind(NULL, &h->grid, h->exact_form,
+                                     h->sizes.vertices, NULL);
+    return part[0] + part[1] + part[2] + part[3] + part[4];
 }
 
 static pmesh_status allocate(pmesh_decoder *dec)
 {
     const pmesh_header_chunk *h = &dec->header;
-    uint64_t part[4];
+    uint64_t part[5];
     dec->block_size = measure(&dec->codec, h, part);
     if (h->sizes.faces > dec->config.max_faces ||
         dec->block_size > dec->config.max_memory ||
@@ -99,6 +113,10 @@ static pmesh_status allocate(pmesh_decoder *dec)
     dec->payload = at + part[0] + part[1];
     dec->names = (char *)at + part[0] + part[1] + part[2];
     memset(dec->names, 0, h->names_size + 1);
+    if (h->exact_size > 0)
+        pmesh_exact_bind(&dec->exact, &h->grid, h->exact_form,
+                         h->sizes.vertices,
+                         at + part[0] + part[1] + part[2] + part[3]);
 
     memcpy(dec->codec.bounds, h->bounds, sizeof dec->codec.bounds);
     pmesh_codec_limit_values(&dec->codec, h->attributes, h->attribute_count);
@@ -202,6 +220,28 @@ static pmesh_status take_block(pmesh_decoder *dec)
     return dec->type == PMESH_CHUNK_BLOCK_LAST ? finish_level(dec) : PMESH_OK;
 }
 
+/* The count that others see changes once the chunk is known to be good. */
+static pmesh_status take_positions(pmesh_decoder *dec)
+{
+    const uint32_t before = dec->exact.count;
+    pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->size);
+    const uint32_t count =
+        pmesh_get_count(&in, dec->header.sizes.vertices - before);
+    if (in.overrun || count == 0)
+        return corrupt(dec, "SPEC 6.8: a count of positions is out of range");
+
+    pmesh_coder coder;
+    pmesh_coder_decode(&coder, in.next, (size_t)(in.end - in.next));
+    bool good = true;
+    while (good && dec->exact.count - before < count)
+        good = pmesh_exact_code(&dec->exact, &coder, &dec->codec.mesh);
+    if (good && pmesh_coder_finish(&coder))
+        return PMESH_OK;
+    dec->exact.count = before;
+    return corrupt(dec, good ? "SPEC 6.1: bytes behind positions"
+                             : "SPEC 6.8: a position is out of reach");
+}
+
 static pmesh_status take_end(pmesh_decoder *dec)
 {
     return dec->hash == dec->header.content_hash
@@ -220,6 +260,8 @@ pmesh_status dec_chunk_finish(pmesh_decoder *dec)
         return PMESH_OK;
     case PMESH_CHUNK_BASE:
         return take_base(dec);
+    case PMESH_CHUNK_POSITIONS:
+        return take_positions(dec);
     case PMESH_CHUNK_END:
         return take_end(dec);
     default:

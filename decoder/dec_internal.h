@@ -12,6 +12,7 @@
 
 #include "decoder/pmesh_decode.h"
 #include "format/codec.h"
+#include "format/exact.h"
 #include "format/header.h"
 
 /* The visible mesh and how to move it. Split u (a vertex number) shows the
@@ -65,6 +66,7 @@ struct pmesh_decoder {
     bool in_level;
     pmesh_codec codec;
     dec_view view;
+    pmesh_exact exact; /* positions; unused unless header.exact_size > 0 */
     uint8_t *payload; /* buffer of header.chunk_size bytes */
     char *names;      /* the names chunk and a final 0 */
     void *block;      /* the one allocation behind the handle */

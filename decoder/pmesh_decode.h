@@ -19,7 +19,7 @@
  * budget among what is decoded, without reading bytes again. Vertices are
  * appended when refining and popped when coarsening, faces too; only the
  * corners next to a split are rewritten. With subset placement a vertex never
- * changes once it is there.
+ * changes once it is there, but for the exact position of a lossless file.
  *
  * Two allocations: the handle, and one block when the header is known. At most
  * 64 KiB of stack.
@@ -104,6 +104,8 @@ typedef struct pmesh_header {
     pmesh_attribute attributes[PMESH_MAX_ATTRIBUTES];
     uint32_t level_count;   /* levels[0] is the base mesh */
     pmesh_level levels[PMESH_MAX_LEVELS];
+    uint64_t exact_bytes;   /* of a lossless file: what its exact positions take
+                               behind the last level; 0: it has none */
     uint64_t memory;        /* bytes of the decoder's block for this file */
 } pmesh_header;
 
@@ -116,6 +118,8 @@ typedef struct pmesh_progress_state {
     uint64_t bytes;       /* consumed by complete chunks, from the start */
     uint32_t faces;       /* decoded: refine() reaches up to here */
     uint32_t levels;      /* complete levels, the base included */
+    uint32_t exact_vertices; /* mesh vertices, from the first on, whose exact
+                                position has arrived */
     int complete;         /* 1: the whole file was decoded */
 } pmesh_progress_state;
 
@@ -127,7 +131,7 @@ pmesh_decoder_progress(const pmesh_decoder *dec);
  *   faces   at most this many (never below the base mesh)
  *   error   the coarsest complete level whose error is at most this; model
  *           units; if none is decoded, the finest
- *   bytes   what the first `bytes` bytes of the file hold
+ *   bytes   the levels that the first `bytes` bytes of the file hold
  */
 typedef struct pmesh_target {
     uint32_t faces;
@@ -182,6 +186,14 @@ PMESH_API pmesh_status pmesh_decoder_mesh(const pmesh_decoder *dec,
  * Dequantises into the caller's memory, one tuple per output vertex of the
  * visible mesh, `stride` bytes apart (0: packed). The buffer must hold
  * view.vertex_count tuples. Returns PMESH_OK, NEED_DATA, or E_ARGUMENT.
+ *
+ * Exact positions of a lossless file follow its last level. A mesh vertex below
+ * progress.exact_vertices gets the floats of the input, bit for bit, at every
+ * budget; where vertices move (PMESH_OPTIMAL), only if it stands on the grid
+ * point where the full mesh has it, as all do at full detail. Others get their
+ * grid point, at most 0.87 steps away. So when exact_vertices has grown from a
+ * to b, positions of mesh vertices a .. b - 1 are to be copied again; refine()
+ * does not list them.
  */
 PMESH_API pmesh_status pmesh_decoder_copy_positions(const pmesh_decoder *dec,
                                                     float *dst, size_t stride);

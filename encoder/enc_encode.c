@@ -4,6 +4,7 @@
  */
 #include <string.h>
 
+#include "encoder/enc_exact.h"
 #include "encoder/enc_mesh.h"
 #include "encoder/enc_replay.h"
 #include "encoder/enc_schedule.h"
@@ -292,8 +293,10 @@ static void fill_report(job *j, uint64_t header_size, uint64_t file_size)
     r->bytes_connectivity = c->part_size[0];
     r->bytes_positions = c->part_size[1];
     r->bytes_attributes = c->part_size[2];
+    r->bytes_lossless = h->exact_size;
     r->bytes_header = file_size - r->bytes_base - r->bytes_connectivity -
-                      r->bytes_positions - r->bytes_attributes;
+                      r->bytes_positions - r->bytes_attributes -
+                      r->bytes_lossless;
 }
 
 static pmesh_status code(job *j, const pmesh_mesh_input *in)
@@ -308,7 +311,11 @@ static pmesh_status code(job *j, const pmesh_mesh_input *in)
     fill_errors(j);
     write_names(j, in);
     status = write_base(j);
-    return status == PMESH_OK ? write_levels(j) : status;
+    if (status == PMESH_OK)
+        status = write_levels(j);
+    if (status == PMESH_OK && j->mesh.exact)
+        status = enc_exact_write(&j->replay, &j->stream, j->room, &j->header);
+    return status;
 }
 
 static pmesh_status run(job *j, const pmesh_mesh_input *in, pmesh_write write,

@@ -102,11 +102,10 @@ static pmesh_status check_indices(const enc_importer *im)
 }
 
 /* Not NaN, not infinite, and no sum of two overflows. */
-static bool is_usable(const double p[3])
+static bool is_usable(const double p[3], double largest)
 {
     for (int k = 0; k < 3; k++)
-        if (!(p[k] >= -ENC_LARGEST_COORDINATE &&
-              p[k] <= ENC_LARGEST_COORDINATE))
+        if (!(p[k] >= -largest && p[k] <= largest))
             return false;
     return true;
 }
@@ -123,8 +122,9 @@ static pmesh_status find_usable(enc_importer *im)
         return PMESH_E_MEMORY;
     for (uint32_t v = 0; v < in->vertex_count; v++) {
         double p[3];
-        enc_load_position(in, v, p);
-        if (is_usable(p))
+        enc_load_position(in, im->config->lossless, v, p);
+        if (is_usable(p, im->config->lossless ? (double)FLT_MAX
+                                              : ENC_LARGEST_COORDINATE))
             enc_bit_put(usable, v);
     }
     memset(im->number, 0xff, in->vertex_count * sizeof *im->number);
@@ -235,7 +235,7 @@ static void fit_grid(enc_importer *im)
         double p[3];
         if (!enc_bit_get(im->first, v))
             continue;
-        enc_load_position(im->in, v, p);
+        enc_load_position(im->in, im->config->lossless, v, p);
         for (int k = 0; k < 3; k++) {
             if (!any || p[k] < grid->origin[k])
                 grid->origin[k] = p[k];
@@ -262,12 +262,14 @@ static void load_positions(enc_importer *im)
         double p[3];
         if (!enc_bit_get(im->first, v))
             continue;
-        enc_load_position(im->in, v, p);
+        enc_load_position(im->in, im->config->lossless, v, p);
         for (int k = 0; k < 3; k++) {
             const int32_t q = pmesh_grid_quantize(&mesh->grid, k, p[k]);
             mesh->position[vertex][k] = q;
             if (q > mesh->bounds[k])
                 mesh->bounds[k] = q;
+            if (mesh->exact)
+                mesh->exact[vertex][k] = (float)p[k];
         }
         vertex++;
     }
@@ -287,7 +289,8 @@ static pmesh_status load_mesh(enc_importer *im)
         return PMESH_E_MEMORY;
     pmesh_status status = find_usable(im);
     if (!status)
-        status = enc_weld(a, in, im->config->weld, im->number);
+        status = enc_weld(a, in, im->config->weld, im->config->lossless,
+                          im->number, &im->report->zero_twins);
     if (!status)
         status = select_faces(im);
     if (status)
@@ -297,12 +300,16 @@ static pmesh_status load_mesh(enc_importer *im)
         pmesh_alloc(a, 3 * (size_t)mesh->face_count, sizeof *mesh->vertex);
     mesh->position =
         pmesh_alloc(a, mesh->vertex_count, sizeof *mesh->position);
+    if (im->config->lossless)
+        mesh->exact =
+            pmesh_alloc(a, mesh->vertex_count, sizeof *mesh->exact);
     im->source_count = mesh->face_count;
     im->source = pmesh_alloc(a, im->source_count, sizeof *im->source);
     if (mesh->material_count > 1)
         mesh->material =
             pmesh_alloc_zero(a, mesh->face_count, sizeof *mesh->material);
     if (!mesh->vertex || !mesh->position || !im->source ||
+        (im->config->lossless && !mesh->exact) ||
         (mesh->material_count > 1 && !mesh->material))
         return PMESH_E_MEMORY;
     number_vertices(im);
@@ -330,7 +337,7 @@ static void begin_report(const enc_importer *im)
     report->degenerate_faces = report->duplicate_faces = 0;
     report->not_finite_faces = report->not_finite_values = 0;
     report->welded_vertices = report->unused_vertices = 0;
-    report->cut_vertices = report->components = 0;
+    report->zero_twins = report->cut_vertices = report->components = 0;
     report->faces = report->vertices = report->wedges = 0;
     report->error_index = 0;
 }

@@ -14,6 +14,7 @@
 
 #include "encoder/enc_mesh.h"
 
+#include <float.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -34,17 +35,23 @@ static inline uint32_t enc_previous_corner(uint32_t corner)
     return corner % 3 == 0 ? corner + 2 : corner - 1;
 }
 
-/* Any stride and alignment. Negative zero becomes zero. */
+/* Any stride and alignment. Negative zero becomes zero; or, lossless, what is
+ * within the floats becomes a float with all of its bits. */
 static inline void enc_load_position(const pmesh_mesh_input *in,
-                                     uint32_t vertex, double out[3])
+                                     bool lossless, uint32_t vertex,
+                                     double out[3])
 {
     const size_t stride =
         in->position_stride ? in->position_stride : 3 * sizeof(double);
     const unsigned char *base = (const unsigned char *)in->positions;
 
     memcpy(out, base + vertex * stride, 3 * sizeof(double));
-    for (int k = 0; k < 3; k++)
-        out[k] += 0.0;
+    for (int k = 0; k < 3; k++) {
+        if (!lossless)
+            out[k] += 0.0;
+        else if (out[k] >= -FLT_MAX && out[k] <= FLT_MAX)
+            out[k] = (double)(float)out[k];
+    }
 }
 
 /* Sets of small integers. */
@@ -95,10 +102,13 @@ typedef struct enc_importer {
  * root: per input vertex, its own number if it takes part, else ENC_NONE. On
  * return, the least of the vertices it is joined with. `distance` 0 joins
  * equal positions only; more joins transitively.
+ *
+ * lossless: equal are floats of equal bits; *zero_twins counts the positions
+ * that have another's value and differ in the sign of a zero.
  */
 pmesh_status enc_weld(const pmesh_allocator *allocator,
                       const pmesh_mesh_input *in, double distance,
-                      uint32_t *root);
+                      bool lossless, uint32_t *root, uint32_t *zero_twins);
 
 /* Faces and positions are there; takes out repeated faces, makes the twins and
  * the vertices that are missing for a manifold. */

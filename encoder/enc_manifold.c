@@ -102,29 +102,43 @@ static pmesh_status count_components(enc_importer *im)
     return PMESH_OK;
 }
 
-/* Gives the vertices from old_count on the positions they are copies of. */
+/* Returns `old`, one item per vertex, with copies for the vertices from
+ * old_count on; or NULL. Releases `old`. */
+static void *copy_items(const enc_importer *im, uint32_t old_count, void *old,
+                        size_t size)
+{
+    const enc_mesh *mesh = im->mesh;
+    const pmesh_allocator *a = &mesh->allocator;
+    unsigned char *items = pmesh_alloc(a, mesh->vertex_count, size);
+
+    if (items) {
+        memcpy(items, old, old_count * size);
+        for (uint32_t c = 0; c < 3 * mesh->face_count; c++) {
+            const size_t input = 3 * (size_t)im->source[c / 3] + c % 3;
+            const uint32_t from = im->number[im->in->indices[input]];
+            if (mesh->vertex[c] >= old_count)
+                memcpy(items + mesh->vertex[c] * size,
+                       (unsigned char *)old + from * size, size);
+        }
+    }
+    pmesh_release(a, old, old_count, size);
+    return items;
+}
+
 static pmesh_status copy_positions(enc_importer *im, uint32_t old_count)
 {
     enc_mesh *mesh = im->mesh;
-    const pmesh_allocator *a = &mesh->allocator;
-    int32_t (*old)[3] = mesh->position;
+    const bool lossless = mesh->exact != NULL;
 
     if (mesh->vertex_count == old_count)
         return PMESH_OK;
     mesh->position =
-        pmesh_alloc(a, mesh->vertex_count, sizeof *mesh->position);
-    if (mesh->position) {
-        memcpy(mesh->position, old, old_count * sizeof *old);
-        for (uint32_t c = 0; c < 3 * mesh->face_count; c++) {
-            const size_t input = 3 * (size_t)im->source[c / 3] + c % 3;
-            if (mesh->vertex[c] >= old_count)
-                memcpy(mesh->position[mesh->vertex[c]],
-                       old[im->number[im->in->indices[input]]],
-                       sizeof *old);
-        }
-    }
-    pmesh_release(a, old, old_count, sizeof *old);
-    return mesh->position ? PMESH_OK : PMESH_E_MEMORY;
+        copy_items(im, old_count, mesh->position, sizeof *mesh->position);
+    if (lossless)
+        mesh->exact =
+            copy_items(im, old_count, mesh->exact, sizeof *mesh->exact);
+    return mesh->position && (mesh->exact || !lossless) ? PMESH_OK
+                                                        : PMESH_E_MEMORY;
 }
 
 pmesh_status enc_make_manifold(enc_importer *im)

@@ -11,6 +11,7 @@ void enc_mesh_destroy(enc_mesh *mesh)
     const pmesh_allocator *a = &mesh->allocator;
     const size_t corners = 3 * (size_t)mesh->face_count;
 
+    pmesh_release(a, mesh->exact, mesh->vertex_count, sizeof *mesh->exact);
     pmesh_release(a, mesh->position, mesh->vertex_count,
                   sizeof *mesh->position);
     pmesh_release(a, mesh->vertex, corners, sizeof *mesh->vertex);

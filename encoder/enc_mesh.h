@@ -32,6 +32,7 @@ typedef struct enc_mesh {
 
     uint32_t vertex_count;
     int32_t (*position)[3]; /* grid coordinates */
+    float (*exact)[3];      /* positions of the input; NULL unless lossless */
 
     uint32_t face_count;
     uint32_t *vertex;   /* per corner */

@@ -5,12 +5,20 @@
 
 typedef struct welder {
     const pmesh_mesh_input *in;
+    bool lossless, signless; /* signless: -0 is 0 all the same */
     uint32_t *root; /* a forest: every parent is less than its child */
     size_t size;    /* of the table, a power of two */
     uint64_t *slot; /* upper half of a hash, input vertex; or FREE_SLOT */
 } welder;
 
 #define FREE_SLOT UINT64_MAX /* no vertex has the number ENC_NONE */
+
+static void load_position(const welder *weld, uint32_t v, double out[3])
+{
+    enc_load_position(weld->in, weld->lossless, v, out);
+    for (int k = 0; k < 3 && weld->signless; k++)
+        out[k] += 0.0;
+}
 
 static uint64_t hash_triple(const double p[3])
 {
@@ -20,9 +28,10 @@ static uint64_t hash_triple(const double p[3])
     return enc_mix(enc_mix(enc_mix(0, word[0]), word[1]), word[2]);
 }
 
+/* Not ==: a position has a -0 only where it differs from 0, a cell has none. */
 static bool equal_triple(const double p[3], const double q[3])
 {
-    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+    return memcmp(p, q, 3 * sizeof *p) == 0;
 }
 
 static bool open_table(welder *weld, const pmesh_allocator *a, size_t count)
@@ -62,7 +71,7 @@ static uint64_t *find_equal(const welder *weld, const double p[3],
         double q[3];
         if (!may_match(weld->slot[i], hash))
             continue;
-        enc_load_position(weld->in, (uint32_t)weld->slot[i], q);
+        load_position(weld, (uint32_t)weld->slot[i], q);
         if (equal_triple(p, q))
             break;
     }
@@ -78,7 +87,7 @@ static size_t join_equal(welder *weld)
         if (weld->root[v] == ENC_NONE)
             continue;
         double p[3];
-        enc_load_position(weld->in, v, p);
+        load_position(weld, v, p);
         uint64_t *slot = find_equal(weld, p, hash_triple(p));
         if (*slot == FREE_SLOT) {
             *slot = make_slot(hash_triple(p), v);
@@ -163,7 +172,7 @@ static uint64_t *find_cell(const cell_grid *grid, const double cell[3],
         double p[3], other[3];
         if (!may_match(weld->slot[i], hash))
             continue;
-        enc_load_position(weld->in, (uint32_t)weld->slot[i], p);
+        load_position(weld, (uint32_t)weld->slot[i], p);
         cell_of(grid, p, other);
         if (equal_triple(cell, other))
             break;
@@ -179,7 +188,7 @@ static void sort_into_cells(cell_grid *grid)
         if (weld->root[v] != v)
             continue;
         double p[3], q[3], cell[3];
-        enc_load_position(weld->in, v, p);
+        load_position(weld, v, p);
         cell_of(grid, p, cell);
         const uint64_t hash = hash_triple(cell);
         uint64_t *slot = find_cell(grid, cell, hash);
@@ -191,7 +200,7 @@ static void sort_into_cells(cell_grid *grid)
         const uint32_t first = (uint32_t)*slot;
         grid->after[v] = grid->after[first];
         grid->after[first] = v;
-        enc_load_position(weld->in, first, q);
+        load_position(weld, first, q);
         if (are_close(grid, p, q)) /* false only where rounding is coarse */
             join(weld, v, first);
     }
@@ -219,11 +228,11 @@ static bool cells_touch(const cell_grid *grid, uint32_t first, uint32_t second,
     double p[3], q[3];
 
     for (uint32_t v = first; v != ENC_NONE; v = grid->after[v]) {
-        enc_load_position(grid->weld->in, v, p);
+        load_position(grid->weld, v, p);
         if (!is_near_cell(grid, p, cell))
             continue;
         for (uint32_t w = second; w != ENC_NONE; w = grid->after[w]) {
-            enc_load_position(grid->weld->in, w, q);
+            load_position(grid->weld, w, q);
             if (are_close(grid, p, q))
                 return true;
         }
@@ -237,7 +246,7 @@ static void join_neighbours(cell_grid *grid, uint32_t first)
     enum { WIDTH = 2 * CELL_REACH + 1, ALL = WIDTH * WIDTH * WIDTH };
     double p[3], cell[3];
 
-    enc_load_position(grid->weld->in, first, p);
+    load_position(grid->weld, first, p);
     cell_of(grid, p, cell);
     for (int i = ALL / 2 + 1; i < ALL; i++) {
         const double other[3] = {
@@ -267,21 +276,39 @@ static void join_close(cell_grid *grid)
             grid->weld->root[v] = grid->weld->root[grid->weld->root[v]];
 }
 
+/* As join_equal() with -0 for 0, and leaves every vertex alone again. */
+static size_t count_values(welder *weld)
+{
+    weld->signless = true;
+    const size_t distinct = join_equal(weld);
+    weld->signless = false;
+
+    for (uint32_t v = 0; v < weld->in->vertex_count; v++)
+        if (weld->root[v] != ENC_NONE)
+            weld->root[v] = v;
+    memset(weld->slot, 0xff, weld->size * sizeof *weld->slot);
+    return distinct;
+}
+
 pmesh_status enc_weld(const pmesh_allocator *allocator,
                       const pmesh_mesh_input *in, double distance,
-                      uint32_t *root)
+                      bool lossless, uint32_t *root, uint32_t *zero_twins)
 {
-    welder weld = { .in = in, .root = root };
-    size_t count = 0;
+    welder weld = { .in = in, .lossless = lossless, .root = root };
+    size_t count = 0, values = 0;
 
     for (size_t v = 0; v < in->vertex_count; v++)
         count += root[v] != ENC_NONE;
     if (!open_table(&weld, allocator, count))
         return PMESH_E_MEMORY;
+    if (lossless)
+        values = count_values(&weld);
     count = join_equal(&weld);
+    *zero_twins = lossless ? (uint32_t)(count - values) : 0;
     close_table(&weld, allocator);
     if (!(distance > 0x1p-1000)) /* quotients by it stay finite or infinite */
         return PMESH_OK;
+    *zero_twins = 0; /* all of them are close */
 
     cell_grid grid = { .weld = &weld, .distance = distance };
     if (!open_table(&weld, allocator, count))

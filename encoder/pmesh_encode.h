@@ -98,6 +98,8 @@ typedef struct pmesh_encoder_config {
                                   only equal ones */
     double threshold;          /* reserved for pairs without an edge, which
                                   format 0 cannot code: has no effect */
+    int lossless;              /* non-zero: a last layer with the input's
+                                  positions, bit for bit, see below */
     uint32_t base_faces;       /* stop at this many faces; 0: about 200 */
     uint32_t base_vertices;    /* ... or this many vertices; 0: no such stop */
     double base_ratio;         /* ... or this share of the faces; 0: no stop */
@@ -115,6 +117,15 @@ typedef struct pmesh_encoder_config {
     void *progress_user;
 } pmesh_encoder_config;
 
+/*
+ * Lossless: the file ends in the position of every vertex as a float, bit for
+ * bit: -0, the smallest and the largest included. Doubles are rounded to floats
+ * first, and one beyond FLT_MAX is not finite. Equal positions are then floats
+ * of equal bits: what differs in the sign of a zero is counted (zero_twins) and
+ * not joined, unless `weld` says so. Of joined vertices the first one's
+ * position counts. All else of the file is as without: levels are coded on the
+ * grid of `position_bits`, attributes keep their bits.
+ */
 PMESH_API pmesh_encoder_config pmesh_encoder_config_default(void);
 
 /* What the encoder did. Counts are of the input unless they say otherwise. */
@@ -127,6 +138,8 @@ typedef struct pmesh_encode_report {
     uint32_t not_finite_values;   /* attribute tuples repaired */
     uint32_t welded_vertices;     /* joined with another of equal position */
     uint32_t unused_vertices;     /* no face uses them */
+    uint32_t zero_twins;          /* lossless: positions that equal another but
+                                     for the sign of a zero; not joined */
     uint32_t cut_vertices;        /* added where the surface is not manifold */
     uint32_t components;          /* connected pieces of the surface */
     uint32_t faces, vertices, wedges; /* full detail of the file */
@@ -137,6 +150,7 @@ typedef struct pmesh_encode_report {
     uint64_t bytes;               /* the file */
     uint64_t bytes_header, bytes_base, bytes_connectivity, bytes_positions,
         bytes_attributes;         /* its parts, chunk framing in bytes_header */
+    uint64_t bytes_lossless;      /* exact positions, framing included */
     double seconds_import, seconds_contract, seconds_code; /* 0: no clock */
     double (*clock)(void);        /* in: seconds, or NULL */
     uint64_t error_index;         /* with E_INDEX, E_NOT_FINITE: which face */

@@ -3,6 +3,8 @@
 
 #include "format/quantize.h"
 
+enum { BINARY_FORM = 0x80 };
+
 uint64_t pmesh_hash_crc(uint64_t hash, uint32_t crc)
 {
     for (int i = 0; i < 4; i++)
@@ -22,6 +24,18 @@ static void write_attribute(pmesh_writer *out, const pmesh_attribute *a)
     }
 }
 
+static void write_exact(pmesh_writer *out, const pmesh_header_chunk *h)
+{
+    if (h->exact_size == 0)
+        return;
+    pmesh_put_varint(out, h->exact_size);
+    for (int k = 0; k < 3; k++) {
+        const pmesh_form *f = &h->exact_form[k];
+        pmesh_put(out, f->digits | (f->binary ? BINARY_FORM : 0u), 1);
+        pmesh_put(out, f->decimals, 1);
+    }
+}
+
 void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h)
 {
     const pmesh_codec_sizes *s = &h->sizes;
@@ -30,7 +44,8 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h)
     pmesh_put(out,
               h->profile | (s->moves ? PMESH_MODES_MOVES : 0) |
                   (h->base_coder == PMESH_BASE_DRACO ? PMESH_MODES_DRACO_BASE
-                                                     : 0),
+                                                     : 0) |
+                  (h->exact_size > 0 ? PMESH_MODES_LOSSLESS : 0),
               1);
     pmesh_put(out, h->grid.bits, 1);
     for (int k = 0; k < 3; k++)
@@ -44,6 +59,7 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h)
     pmesh_put_varint(out, s->block_wedges);
     pmesh_put_varint(out, h->moved_corners);
     pmesh_put_varint(out, h->names_size);
+    write_exact(out, h);
 
     pmesh_put(out, h->attribute_count, 1);
     for (uint32_t i = 0; i < h->attribute_count; i++)
@@ -174,6 +190,7 @@ static const char *read_frame(pmesh_cursor *in, pmesh_header_chunk *h)
     h->sizes.moves = modes & PMESH_MODES_MOVES;
     h->base_coder = modes & PMESH_MODES_DRACO_BASE ? PMESH_BASE_DRACO
                                                    : PMESH_BASE_NATIVE;
+    h->exact_size = modes & PMESH_MODES_LOSSLESS ? 1 : 0; /* until it is read */
     h->grid.bits = pmesh_get_u8(in);
     if (h->grid.bits < 4 || h->grid.bits > 24)
         return "SPEC 5.3: position bits are 4 to 24";
@@ -204,6 +221,26 @@ static const char *read_limits(pmesh_cursor *in, pmesh_header_chunk *h)
                : NULL;
 }
 
+static const char *read_exact(pmesh_cursor *in, pmesh_header_chunk *h)
+{
+    if (h->exact_size == 0)
+        return NULL;
+    h->exact_size = pmesh_get_varint(in);
+    if (h->exact_size == 0 || h->exact_size > PMESH_MAX_FILE)
+        return "SPEC 5.3: the size of the exact positions is out of range";
+    for (int k = 0; k < 3; k++) {
+        const uint8_t digits = pmesh_get_u8(in);
+        h->exact_form[k] = (pmesh_form){
+            .binary = digits & BINARY_FORM,
+            .digits = digits & (BINARY_FORM - 1),
+            .decimals = pmesh_get_u8(in)
+        };
+        if (!pmesh_form_legal(&h->exact_form[k]))
+            return "SPEC 5.3: an unknown form of exact positions";
+    }
+    return NULL;
+}
+
 /* What the limits may be, given the counts: no more than could be used. */
 static const char *check_limits(const pmesh_header_chunk *h)
 {
@@ -226,6 +263,8 @@ pmesh_status pmesh_header_read(pmesh_cursor *in, pmesh_header_chunk *h,
     *rule = read_frame(in, h);
     if (!*rule)
         *rule = read_limits(in, h);
+    if (!*rule)
+        *rule = read_exact(in, h);
     if (!*rule)
         *rule = read_attributes(in, h);
     if (!*rule)

@@ -7,6 +7,7 @@
 
 #include "format/codec.h"
 #include "format/cursor.h"
+#include "format/ordinal.h"
 
 /* Of a level, with byte offsets from the end of the header chunk. */
 typedef struct pmesh_level_entry {
@@ -26,6 +27,8 @@ typedef struct pmesh_header_chunk {
     uint32_t chunk_size;    /* largest payload behind the header */
     uint32_t moved_corners; /* of all splits together: see dec_view.c */
     uint32_t names_size;    /* payload of the names chunk, 0: none */
+    uint64_t exact_size;    /* bytes of the positions chunks, 0: none */
+    pmesh_form exact_form[3];
     uint32_t attribute_count;
     pmesh_attribute attributes[PMESH_MAX_ATTRIBUTES];
     uint32_t level_count;

@@ -23,6 +23,7 @@
 #define PMESH_CHUNK_BLOCK_LAST 4 /* splits; the level is complete after it */
 #define PMESH_CHUNK_END 5
 #define PMESH_CHUNK_NAMES 6
+#define PMESH_CHUNK_POSITIONS 7  /* exact ones, behind the last level */
 #define PMESH_CHUNK_SKIPPABLE 0x80
 #define PMESH_CRC_SIZE 4
 
@@ -30,7 +31,8 @@
 #define PMESH_MODES_PROFILE 3u     /* mask */
 #define PMESH_MODES_MOVES 4u       /* parents move */
 #define PMESH_MODES_DRACO_BASE 8u  /* the base mesh is a Draco buffer */
-#define PMESH_MODES_ALL 15u
+#define PMESH_MODES_LOSSLESS 16u   /* exact positions at the end */
+#define PMESH_MODES_ALL 31u
 
 #define PMESH_MAX_HEADER_SIZE 4096
 #define PMESH_MAX_CHUNK_SIZE (1u << 28)

@@ -33,6 +33,7 @@ typedef struct asset_attribute {
 typedef struct asset {
     double *positions; /* xyz */
     size_t vertex_count;
+    bool floats; /* positions are floats: text need not tell more */
     uint32_t *indices; /* 3 per face, counter-clockwise */
     size_t face_count;
     uint32_t *materials;   /* per face, < material_count; NULL: all 0 */

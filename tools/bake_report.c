@@ -24,6 +24,9 @@ void bake_report_note_losses(bake_report *r)
                "faces left out: two corners at one position");
     note_count(&r->notes, e->duplicate_faces,
                "faces left out: exact copies of others");
+    note_count(&r->notes, e->zero_twins,
+               "positions differ from another in the sign of a zero only and "
+               "were not joined (--weld joins them)");
     note_count(&r->notes, e->not_finite_values,
                "attribute values were not finite and became 0");
 }
@@ -40,6 +43,12 @@ static void print_parts(const pmesh_encode_report *e, FILE *out)
             ", positions %" PRIu64 ", attributes %" PRIu64 " bytes\n",
             e->bytes_header, e->bytes_base, e->bytes_connectivity,
             e->bytes_positions, e->bytes_attributes);
+    if (e->bytes_lossless > 0)
+        fprintf(out,
+                "  exact positions %" PRIu64
+                " bytes, %.2f bits per vertex\n",
+                e->bytes_lossless,
+                8.0 * (double)e->bytes_lossless / e->vertices);
     fprintf(out,
             "  input %" PRIu32 " faces, %" PRIu32 " vertices (%" PRIu32
             " welded, %" PRIu32 " unused, %" PRIu32 " added by cuts)\n",
@@ -96,6 +105,7 @@ static void json_counts(json *j, const pmesh_encode_report *e)
     json_count(j, "connectivity", e->bytes_connectivity);
     json_count(j, "positions", e->bytes_positions);
     json_count(j, "attributes", e->bytes_attributes);
+    json_count(j, "lossless", e->bytes_lossless);
     json_close(j);
     json_open_flat(j, "dropped", '{');
     json_count(j, "degenerate_faces", e->degenerate_faces);
@@ -106,6 +116,7 @@ static void json_counts(json *j, const pmesh_encode_report *e)
     json_open_flat(j, "changed", '{');
     json_count(j, "welded_vertices", e->welded_vertices);
     json_count(j, "cut_vertices", e->cut_vertices);
+    json_count(j, "zero_twins", e->zero_twins);
     json_count(j, "not_finite_values", e->not_finite_values);
     json_close(j);
 }

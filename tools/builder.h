@@ -130,6 +130,14 @@ static inline float builder_float(double value)
     return value < -(double)FLT_MAX ? -INFINITY : (float)value;
 }
 
+/* asset_number_print() of a coordinate: of a float where the mesh has them. */
+static inline size_t builder_print(const asset *mesh, char *dst, size_t i)
+{
+    return mesh->floats
+               ? asset_number_print_float(dst, (float)mesh->positions[i])
+               : asset_number_print(dst, mesh->positions[i]);
+}
+
 /*
  * What asset_read() does with every mesh a reader gives: fails without a face
  * or with an index out of range; repairs or drops attributes that are not

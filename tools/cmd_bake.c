@@ -23,7 +23,7 @@ typedef struct options {
     uint32_t position_bits, normal_bits, uv_bits, color_bits;
     uint32_t base_faces, threads;
     double weld, threshold, max_error;
-    bool no_attributes, json, quiet, verbose, progress;
+    bool lossless, no_attributes, json, quiet, verbose, progress;
 } options;
 
 #define AT(member) .offset = offsetof(options, member)
@@ -42,6 +42,9 @@ static const args_option option_table[] = {
       .max = 24, AT(position_bits),
       .help = "bits per coordinate of the largest extent,\n"
               "4 to 24; default 14" },
+    { .name = "lossless", .kind = ARGS_FLAG, AT(lossless),
+      .help = "positions come back as the input's floats, bit for\n"
+              "bit, from a last layer; doubles are rounded first" },
     { .name = "normal-bits", .kind = ARGS_COUNT, .value = "N", .min = 4,
       .max = 16, AT(normal_bits),
       .help = "per component of a normal, 4 to 16; default 10" },
@@ -154,6 +157,7 @@ static void configure(const options *o, pmesh_encoder_config *config)
     config->base_encoder = draco_base_encode;
     config->base_decoder = draco_base_decode;
     config->weld = o->weld;
+    config->lossless = o->lossless;
     config->threshold = o->threshold;
     config->threads = o->threads;
 }

@@ -207,8 +207,9 @@ static void warn(const extraction *job, const stream *s, const file_data *data,
     else if (!s->progress.complete && !data->more)
         report_warning(name, "cut off: %zu of %" PRIu64 " bytes, %" PRIu32
                        " of %" PRIu32 " levels, %" PRIu32 " of %" PRIu32
-                       " faces", data->size, h->bytes, s->progress.levels,
-                       h->level_count, s->progress.faces, h->faces);
+                       " faces%s", data->size, h->bytes, s->progress.levels,
+                       h->level_count, s->progress.faces, h->faces,
+                       h->exact_bytes > 0 ? ", not all exact" : "");
 }
 
 static int extract_from(const extraction *job, const file_data *data)

@@ -102,6 +102,10 @@ static void print_text(const char *path, const stream *s, uint64_t size,
            h->level_count, levels_profile_name(h->profile),
            levels_placement_name(h->placement));
     printf("positions    %u bits, step %.6g\n", h->grid.bits, h->grid.step);
+    if (h->exact_bytes > 0)
+        printf("lossless     exact floats in the last %" PRIu64
+               " bytes, %.2f bits per vertex\n",
+               h->exact_bytes, 8.0 * (double)h->exact_bytes / h->mesh_vertices);
     print_attributes(h);
     print_materials(s);
     if (levels) {
@@ -174,6 +178,8 @@ static void print_json(const char *path, const stream *s, uint64_t size)
     json_text(&j, "profile", levels_profile_name(h->profile));
     json_text(&j, "placement", levels_placement_name(h->placement));
     json_count(&j, "position_bits", h->grid.bits);
+    json_bool(&j, "lossless", h->exact_bytes > 0);
+    json_count(&j, "lossless_bytes", h->exact_bytes);
     json_grid(&j, h);
     json_count(&j, "decoder_memory", h->memory);
     json_lists(&j, s);

@@ -82,8 +82,9 @@ static void print_verdict(const char *path, const verdict *v)
     if (v->code == CMD_DONE) {
         report_put(stdout, name);
         printf(": good, %" PRIu64 " bytes, %" PRIu32 " levels, %" PRIu32
-               " faces\n",
-               v->bytes, v->progress.levels, v->progress.faces);
+               " faces%s\n",
+               v->bytes, v->progress.levels, v->progress.faces,
+               v->header.exact_bytes > 0 ? ", exact positions" : "");
     } else if (v->progress.levels > 0) {
         report_error(name, v->error.where,
                      "%s; last good level %" PRIu32 " of 0..%" PRIu32
@@ -110,6 +111,8 @@ static void json_verdict(json *j, const char *path, const verdict *v)
     json_count(j, "good_bytes", v->progress.bytes);
     json_count(j, "good_levels", v->progress.levels);
     json_count(j, "good_faces", v->progress.faces);
+    if (v->has_header && v->header.exact_bytes > 0)
+        json_count(j, "exact_vertices", v->progress.exact_vertices);
     if (v->code != CMD_DONE) {
         json_text(j, "where", v->error.where);
         json_text(j, "error", v->error.what);

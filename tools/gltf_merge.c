@@ -138,6 +138,17 @@ static void put_channel(const merge *g, const placed *p, size_t i, uint32_t v,
         out[k] = fabs(in[k]) <= FLT_MAX ? (float)in[k] : NAN;
 }
 
+/* Where a row moves nothing, the same bits: a sum would lose the sign of -0. */
+static double placed_at(const double *m, int i, const double in[4])
+{
+    const double *row = m + 4 * i;
+    bool still = row[3] == 0.0;
+    for (int k = 0; k < 3; k++)
+        still = still && row[k] == (k == i ? 1.0 : 0.0);
+    return still ? in[i]
+                 : row[0] * in[0] + row[1] * in[1] + row[2] * in[2] + row[3];
+}
+
 /* The asset's vertex for vertex `v` of the primitive. */
 static bool take_vertex(merge *g, const placed *p, uint32_t v, uint32_t *id)
 {
@@ -150,8 +161,7 @@ static bool take_vertex(merge *g, const placed *p, uint32_t v, uint32_t *id)
 
     gltf_get(p->position, v, in);
     for (int i = 0; i < 3; i++) {
-        const double *row = p->m + 4 * i;
-        out[i] = row[0] * in[0] + row[1] * in[1] + row[2] * in[2] + row[3];
+        out[i] = placed_at(p->m, i, in);
         if (!isfinite(out[i]))
             return asset_fail(g->error, p->where,
                               "vertex %u has a position that is not finite",

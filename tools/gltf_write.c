@@ -132,7 +132,7 @@ static bool choose_origin(writer *w, asset_error *error)
         extent = fmax(extent, high[k] - low[k]);
         reach = fmax(reach, fmax(fabs(low[k]), fabs(high[k])));
     }
-    if (reach > 8.0 * extent) {
+    if (reach > 8.0 * extent && !m->floats) {
         for (int k = 0; k < 3; k++)
             w->origin[k] = low[k] + (high[k] - low[k]) / 2.0;
     }

@@ -467,7 +467,7 @@ static void write_positions(const asset *mesh, asset_bytes *out)
         line[n++] = 'v';
         for (size_t k = 0; k < 3; k++) {
             line[n++] = ' ';
-            n += asset_number_print(line + n, mesh->positions[3 * v + k]);
+            n += builder_print(mesh, line + n, 3 * v + k);
         }
         for (size_t k = 0; color && k < 3; k++) {
             line[n++] = ' ';

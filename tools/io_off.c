@@ -316,7 +316,7 @@ bool asset_write_off(const asset *mesh, asset_bytes *out, asset_error *error)
         char line[3 * 33];
         size_t n = 0;
         for (size_t k = 0; k < 3; k++) {
-            n += asset_number_print(line + n, mesh->positions[3 * v + k]);
+            n += builder_print(mesh, line + n, 3 * v + k);
             line[n++] = k < 2 ? ' ' : '\n';
         }
         asset_put(out, line, n);

@@ -40,13 +40,12 @@ typedef struct stl_reader {
     hash_table table; /* over mesh.positions */
 } stl_reader;
 
-/* The vertex at a position; -0 and 0 are one place. */
-static void add_corner(stl_reader *stl, const double position[3])
+/* The vertex with the bits of a position: whether -0 and 0 are one place is
+ * left to the encoder, which may be asked to tell them apart. */
+static void add_corner(stl_reader *stl, const double p[3])
 {
     mesh_builder *mesh = &stl->mesh;
-    const double p[3] = { position[0] + 0.0, position[1] + 0.0,
-                          position[2] + 0.0 };
-    const uint32_t hash = hash_bytes(p, sizeof p);
+    const uint32_t hash = hash_bytes(p, 3 * sizeof *p);
     if (!hash_reserve(&stl->table)) {
         mesh->failed = true;
         return;
@@ -58,7 +57,7 @@ static void add_corner(stl_reader *stl, const double position[3])
             break;
         if (slot.hash == hash &&
             memcmp(mesh->positions.items + 3 * (size_t)slot.id, p,
-                   sizeof p) == 0) {
+                   3 * sizeof *p) == 0) {
             builder_corner(mesh, builder_vertex(slot.id));
             return;
         }

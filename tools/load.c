@@ -66,6 +66,27 @@ static bool copy_faces(const pmesh_view *view, const pmesh_grid *grid,
     return true;
 }
 
+/* As copy_faces() left them, on the grid, unless there are exact ones. */
+static bool copy_exact(const pmesh_decoder *dec, const pmesh_view *view,
+                       asset *out)
+{
+    if (pmesh_decoder_progress(dec).exact_vertices == 0)
+        return true;
+    float *xyz = malloc((3 * (size_t)view->vertex_count + 1) * sizeof *xyz);
+    if (!xyz || pmesh_decoder_copy_positions(dec, xyz, 0) != PMESH_OK) {
+        free(xyz);
+        return false;
+    }
+    for (uint32_t i = 0; i < view->vertex_count; i++) {
+        const size_t v = view->positions_of ? view->positions_of[i] : i;
+        for (size_t k = 0; k < 3; k++)
+            out->positions[3 * v + k] = (double)xyz[3 * (size_t)i + k];
+    }
+    free(xyz);
+    out->floats = true;
+    return true;
+}
+
 static bool copy_attribute(const pmesh_decoder *dec, const pmesh_view *view,
                            const pmesh_attribute *from, uint32_t number,
                            asset_attribute *to)
@@ -124,6 +145,7 @@ bool asset_from_decoder(const pmesh_decoder *dec, asset *out,
         pmesh_decoder_mesh(dec, &view) != PMESH_OK)
         return asset_fail(error, "", "the base mesh is not there yet");
     bool ok = copy_faces(&view, &header.grid, out) &&
+              copy_exact(dec, &view, out) &&
               copy_materials(dec, &view, header.material_count, out);
     for (uint32_t i = 0; ok && i < header.attribute_count; i++) {
         out->attribute_count++;

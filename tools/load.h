@@ -25,8 +25,8 @@ bool load_is_stream(const file_data *data, const char *path);
 
 /*
  * Copies the visible mesh of a decoder: one position per mesh vertex, origin +
- * step * q in doubles; indices name the mesh vertex, attributes have .indices
- * with the output vertex of every corner. Fails (false, *out empty) before the
+ * step * q in doubles, or floats once exact ones have come; indices name the
+ * mesh vertex, attributes have .indices with the output vertex of every corner. Fails (false, *out empty) before the
  * base mesh has arrived and when memory is out.
  */
 bool asset_from_decoder(const pmesh_decoder *dec, asset *out,

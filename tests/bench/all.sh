@@ -10,5 +10,7 @@ echo "== bytes, positions at 12 bits"
 tests/bench/size.sh
 echo "== distance to the original at equal face counts"
 tests/bench/quality.sh
+echo "== cost of exact positions"
+tests/bench/lossless.sh
 echo "== time and memory"
 tests/bench/time.sh

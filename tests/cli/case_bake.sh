@@ -34,7 +34,8 @@ ok 'escapes are valid JSON' is_json
 
 for option in '--profile compact' '--profile quality' '--placement optimal' \
     '--metric accumulated' '--position-bits 8' '--position-bits 24' \
-    '--base-faces 1000' '--max-error 0.01' '--weld 1e-9' '--threshold 0.01'; do
+    '--base-faces 1000' '--max-error 0.01' '--weld 1e-9' '--threshold 0.01' \
+    '--lossless --weld 1e-9'; do
     # shellcheck disable=SC2086 # two words on purpose
     check "bake $option" 0 bake "$torus" -q -o o.pmesh $option
     check "verify after $option" 0 verify -q o.pmesh

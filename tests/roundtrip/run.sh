@@ -109,6 +109,8 @@ done
 roundtrip "$dir/sample.obj" "--profile quality --placement optimal"
 roundtrip "$dir/sample.obj" "--no-attributes --position-bits 8"
 roundtrip "$dir/sample.obj" "--position-bits 20"
+roundtrip "$dir/sample.obj" "--lossless --position-bits 10"
+roundtrip "$dir/sample.obj" "--lossless --base draco"
 for faces in 200 2000 100M; do
     for model in "$dir/sample.obj" "$PMESH_MODELS"/human.obj \
         "$PMESH_MODELS"/cow.obj "$PMESH_MODELS"/CesiumMan.glb; do

@@ -509,8 +509,9 @@ TEST(stl_joins_equal_positions)
                     "facet normal nan 0 0 outer loop vertex -0 0 0 vertex 0 1 0"
                     " vertex 0 0 1 endloop endfacet endsolid x",
                     &mesh));
-    CHECK(mesh.face_count == 3 && mesh.vertex_count == 4);
-    CHECK(has_corners(&mesh, 1, 0, 1, 2) && has_corners(&mesh, 2, 0, 2, 3));
+    CHECK(mesh.face_count == 3 && mesh.vertex_count == 5);
+    CHECK(has_corners(&mesh, 1, 0, 1, 2) && has_corners(&mesh, 2, 3, 2, 4));
+    CHECK(mesh.positions[9] == 0 && signbit(mesh.positions[9]));
     CHECK(!mesh.warnings[0]);
     asset_free(&mesh);
     CHECK(is_refused(ASSET_STL, "solid\n"));
