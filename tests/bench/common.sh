@@ -5,11 +5,13 @@
 #   MODELS        names without .obj, to take fewer than all
 #   OUT           folder for what is measured (build/bench)
 #   MESHDIST      a second opinion on distances, see rms
+# Functions in (parentheses) run in a subshell: their variables are their own.
 # shellcheck shell=sh
 set -eu
 PMESH=${PMESH:-build/release/pmesh}
 PMESH_MODELS=${PMESH_MODELS:-../shared/models}
 OUT=${OUT:-build/bench}
+# shellcheck disable=SC2034 # some use it
 tools=${PMESH%/*} # the benchmarks' own programs lie next to it
 
 need() {
@@ -51,7 +53,7 @@ bytes() {
 }
 
 # json FILE KEY...: the first numbers of these names, separated by commas
-json() {
+json() (
     file=$1
     shift
     tr ',{}' '[\n*]' <"$file" | awk -F '": *' -v keys="$*" '
@@ -59,11 +61,13 @@ json() {
         !($1 in value) { value[$1] = $2 + 0 }
         END {
             n = split(keys, key, " ")
-            for (i = 1; i <= n; i++)
+            for (i = 1; i <= n; i++) {
+                if (!(key[i] in value)) exit 1
                 printf "%s%.17g", (i > 1 ? "," : ""), value[key[i]]
+            }
             print ""
         }'
-}
+)
 
 # rms ORIGINAL MESH: the two-sided root mean square of the distance, relative
 # to the diagonal of the original's bounding box. The meter is `pmesh compare`,
@@ -73,12 +77,27 @@ rms() {
         awk -F '": *' '
             $1 ~ /"rms$/ { any = $2 }
             $1 ~ /"rms_rel$/ { any = $2; exit }
-            END { print any }'
+            END { if (any == "") exit 1; print any }'
 }
+
+# target MODEL PERCENT: so many of its faces
+target() {
+    awk -v n="$(faces "$1")" -v p="$2" \
+        'BEGIN { printf "%d\n", n * p / 100 + 0.5 }'
+}
+
+# base_faces MODEL PERCENT...: a base mesh no finer than any of these levels
+base_faces() (
+    model=$1
+    shift
+    for percent; do
+        target "$model" "$percent"
+    done | awk 'BEGIN { n = 200 } $1 < n { n = $1 } END { print n }'
+)
 
 # bake MODEL OUT KIND BITS OPTION...: positions only; the report to OUT.json.
 # KIND is a profile, or "optimal": quality with optimal placement.
-bake() {
+bake() (
     model=$1 out=$2 kind=$3 bits=$4
     shift 4
     case $kind in
@@ -87,7 +106,7 @@ bake() {
     esac
     "$PMESH" bake -q --json "$model" --no-attributes --position-bits "$bits" \
         "$@" -o "$out" >"$out.json"
-}
+)
 
 # draco MESH OUT BITS
 draco() {

@@ -25,7 +25,8 @@ class Svg:
         turned = f' transform="rotate({turn} {x:.1f} {y:.1f})"' if turn else ""
         self.out.append(
             f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" fill="{fill}" '
-            f'text-anchor="{anchor}" font-weight="{weight}"{turned}>'
+            f'text-anchor="{anchor}" font-weight="{weight}"{turned} '
+            f'stroke="white" stroke-width="3" paint-order="stroke">'
             f'{escape(what)}</text>')
 
     def line(self, points, stroke=GRID, width=1.0, dash=""):
@@ -63,6 +64,9 @@ PARTS = [("header", "#9aa0a6", "header, framing"), ("base", "#8e6bbf", "base"),
          ("positions", "#efa23b", "positions")]
 
 
+PART_NAMES = [name for name, _, _ in PARTS]
+
+
 def sums(rows):
     """A model "sum" behind the models."""
     total = {}
@@ -74,25 +78,25 @@ def sums(rows):
     return rows + list(total.values())
 
 
-PART_NAMES = [name for name, _, _ in PARTS]
-
-
 def size_panel(svg, rows, top, height, bits):
-    rows = [r for r in sums([r for r in rows if r["bits"] == bits])]
+    rows = sums([r for r in rows if r["bits"] == bits])
     models = unique(r["model"] for r in rows)
     kinds = unique(r["coder"] for r in rows if r["coder"] != "draco")
     draco = {r["model"]: int(r["bytes"]) for r in rows if r["coder"] == "draco"}
     ratio = [int(r["bytes"]) / draco[r["model"]] for r in rows]
-    high = math.ceil(max(ratio) * 5 + 0.3) / 5
+    tick = 0.5 if max(ratio) > 2.2 else 0.2
+    high = math.ceil(max(ratio) / tick + 0.3) * tick
     left, width, bottom = 70, svg.size[0] - 94, top + height
     scale = height / high
-    for i in range(int(high * 5 + 0.5) + 1):
-        y = bottom - i / 5 * scale
+    for i in range(round(high / tick) + 1):
+        y = bottom - i * tick * scale
         svg.line([(left, y), (left + width, y)])
-        svg.text(left - 8, y + 4, f"{i / 5:.1f}", "end", SOFT)
+        svg.text(left - 8, y + 4, f"{i * tick:.1f}", "end", SOFT)
     svg.text(22, top + height / 2, "bytes / Draco's bytes", "middle", SOFT,
              turn=-90)
     svg.text(left, top - 10, f"{bits}-bit positions", weight="bold", size=13)
+    svg.line([(left, bottom - scale), (left + width, bottom - scale)],
+             "#c0392b", 1.6, "6 4")
     step = width / len(models)
     bar = step * 0.8 / len(kinds)
     for m, model in enumerate(models):
@@ -111,8 +115,6 @@ def size_panel(svg, rows, top, height, bits):
             svg.text(middle, bottom + 12, kind[0].upper(), "middle", SOFT, 9)
         svg.text(start + step * 0.4, bottom + 28, model, "middle",
                  weight="bold" if model == "sum" else "normal")
-    svg.line([(left, bottom - scale), (left + width, bottom - scale)], "#c0392b",
-             1.6, "6 4")
     svg.line([(left, bottom), (left + width, bottom)], INK)
 
 

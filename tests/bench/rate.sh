@@ -35,6 +35,7 @@ shares() {
 # draco_levels NAME: rows of every Draco file
 draco_levels() {
     share=$(shares "$(faces "$dir/$1.obj")")
+    # shellcheck disable=SC2086 # words on purpose
     "$tools/bench_simplify" -t cgal-lt "$dir/$1.obj" "$dir" ${share#100 } \
         >"$dir/peer.log"
     cp "$dir/$1.obj" "$dir/cgal-lt_100.obj"
