@@ -142,7 +142,7 @@ def draw_size(rows, path):
 SERIES = {"balanced": ("#3d7cc9", "pmesh balanced"),
           "quality": ("#2a9d5c", "pmesh quality"),
           "optimal": ("#8e6bbf", "pmesh quality, optimal placement"),
-          "draco": ("#d9622b", "best Draco file of a simplified mesh")}
+          "draco": ("#d9622b", "best single Draco file")}
 
 
 def envelope(points):

@@ -66,7 +66,7 @@ cuts() {
         !(whole in best) || $6 < best[whole] { best[whole] = $6; put($3) }
         END {
             for (i = 0; i <= 20; i++)
-                put(all / 10 ^ (i / 10) + 0.999)
+                put(int(all / 10 ^ (i / 10) + 0.999))
         }' "$1.json" - | sort -nu
 }
 
