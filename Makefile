@@ -139,12 +139,24 @@ golden: $(golden)
 	$(B)/golden_bake tests/golden
 	$(B)/golden_decode tests/golden/*.pmesh >tests/golden/hashes.txt
 
-## bench: size, quality and time against other programs (tests/bench)
-bench: bench-deps
-	+@$(submake) all $(B)/bench_simplify
-	@tests/bench/all.sh $(B)
-$(B)/bench_simplify: $(B)/tests/bench/bench_simplify.o
-	$(quiet)$(CXX) $^ $(link_flags) -lmeshoptimizer -lgmp -lmpfr -o $@
+## bench: all of the following, against other programs (tests/bench)
+bench: bench-all
+## bench-size: bytes of complete files, by part; draws size.svg
+## bench-rate: bytes against distance of every prefix; draws rate.svg
+## bench-lod: distance at equal faces, against strict quadric order
+## bench-quality: distance at equal faces, against CGAL and meshoptimizer
+## bench-decode: time to decode, against Draco
+## bench-lossless: cost of exact positions
+## bench-time: time and memory of the commands
+bench_programs := $(addprefix $(B)/bench_,decode qem simplify)
+bench-%: bench-deps
+	+@$(submake) all $(bench_programs)
+	@PMESH=$(B)/pmesh tests/bench/$*.sh
+$(bench_programs): $(B)/bench_%: $(B)/tests/bench/bench_%.o
+	$(quiet)$(CXX) $(inputs) $(link_flags) $(bench_libs) -o $@
+$(B)/bench_decode: $(B)/libpmesh-dec.a
+$(B)/bench_decode: bench_libs := -ldraco
+$(B)/bench_simplify: bench_libs := -lmeshoptimizer -lgmp -lmpfr
 
 ## deps: install the Debian packages that building and testing need
 deps:

@@ -44,6 +44,7 @@ group_bench() {
     need draco program draco_encoder
     need libcgal-dev header CGAL/version.h
     need libeigen3-dev header eigen3/Eigen/Core
+    need python3 program python3
     need time test -x /usr/bin/time
 }
 

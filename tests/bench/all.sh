@@ -1,16 +1,19 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Usage: tests/bench/all.sh BUILD_DIR
+# Usage: tests/bench/all.sh
 # Runs every benchmark; see common.sh for what the environment says.
 set -eu
-PMESH=$1/pmesh
-export PMESH
-
-echo "== bytes, positions at 12 bits"
+echo "== bytes of complete files"
 tests/bench/size.sh
-echo "== distance to the original at equal face counts"
+echo "== bytes against distance"
+tests/bench/rate.sh
+echo "== distance at equal face counts: strict quadric order"
+tests/bench/lod.sh
+echo "== distance at equal face counts: other programs"
 tests/bench/quality.sh
 echo "== cost of exact positions"
 tests/bench/lossless.sh
+echo "== time to decode"
+tests/bench/decode.sh
 echo "== time and memory"
 tests/bench/time.sh

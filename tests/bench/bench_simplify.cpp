@@ -2,11 +2,11 @@
 /*
  * bench_simplify - simplifies an OBJ model with other libraries.
  *
- *   bench_simplify MODEL.obj OUT_DIR PERCENT...
+ *   bench_simplify [-t TOOL] MODEL.obj OUT_DIR PERCENT...
  *
  * Runs meshoptimizer's meshopt_simplify and CGAL's edge collapse with the
- * policies of Lindstrom-Turk and of Garland-Heckbert down to each percentage
- * of the faces. Writes OUT_DIR/<tool>_<percent>.obj and one line of CSV each:
+ * policies of Lindstrom-Turk and of Garland-Heckbert (or only the one of
+ * meshopt, cgal-lt, cgal-gh) down to each percentage of the faces. Writes OUT_DIR/<tool>_<percent>.obj and one line of CSV each:
  *
  *   tool,percent,target,faces,cpu_s
  *
@@ -205,8 +205,9 @@ const struct {
     { "cgal-gh", simplify_garland_heckbert },
 };
 
-void run(const std::string &model, const std::string &dir,
-         const std::vector<std::string> &percents)
+/* only: the name of a tool, or empty for all. */
+void run(const std::string &only, const std::string &model,
+         const std::string &dir, const std::vector<std::string> &percents)
 {
     const Soup in = read_obj(model);
     for (const std::string &percent : percents) {
@@ -214,6 +215,8 @@ void run(const std::string &model, const std::string &dir,
             std::lround(static_cast<double>(in.triangles.size()) *
                         std::stod(percent) / 100));
         for (const auto &tool : tools) {
+            if (!only.empty() && only != tool.name)
+                continue;
             double seconds = 0;
             const Soup out = tool.simplify(in, target, &seconds);
             write_obj(dir + "/" + tool.name + "_" + percent + ".obj", out);
@@ -228,12 +231,16 @@ void run(const std::string &model, const std::string &dir,
 
 int main(int argc, char **argv)
 {
-    if (argc < 4) {
-        std::cerr << "usage: bench_simplify MODEL.obj OUT_DIR PERCENT...\n";
+    const bool one = argc > 2 && std::string(argv[1]) == "-t";
+    char **operand = argv + (one ? 3 : 1);
+    if (argv + argc - operand < 3) {
+        std::cerr << "usage: bench_simplify [-t TOOL] MODEL.obj OUT_DIR "
+                     "PERCENT...\n";
         return 2;
     }
     try {
-        run(argv[1], argv[2], { argv + 3, argv + argc });
+        run(one ? argv[2] : "", operand[0], operand[1],
+            { operand + 2, argv + argc });
     } catch (const std::exception &e) {
         std::cerr << "bench_simplify: " << e.what() << '\n';
         return 1;

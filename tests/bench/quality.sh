@@ -3,59 +3,37 @@
 # Usage: tests/bench/quality.sh
 #
 # Surface distance at equal face counts: levels of pmesh files against the
-# results of meshoptimizer and CGAL. The meter is `pmesh compare --json`, or
-# MESHDIST for a second opinion: called with ORIGINAL LEVEL, it prints JSON
-# with "rms_rel" or else "rms": the two-sided root mean square of the distance,
-# relative to the diagonal of the original's bounding box.
+# results of meshoptimizer and CGAL.
 #
 # Writes quality.csv and prints geometric means relative to CGAL's
 # Lindstrom-Turk, of the cases that met the face count within 2 %.
-# BITS: of the positions (14); PERCENTS: levels to compare (50 10 1).
+# BITS: of the positions (14); PERCENTS: levels to compare (50 10 1); MESHDIST:
+# see common.sh.
 . tests/bench/common.sh
 bits=${BITS:-14}
 percents=${PERCENTS:-50 10 1}
-simplify=${PMESH%/*}/bench_simplify
-meter=${MESHDIST:-$PMESH compare --json}
-need "$simplify" "make bench"
+need "$tools/bench_simplify" "make bench-quality"
 dir=$OUT/quality
 mkdir -p "$dir"
 
 # measure MODEL TOOL PERCENT TARGET CPU LEVEL: one row
 measure() {
-    rms=$($meter "$1" "$6" | tr ',{}' '[\n*]' | awk -F '": *' '
-        $1 ~ /"rms$/ { any = $2 }
-        $1 ~ /"rms_rel$/ { any = $2; exit }
-        END { print any }')
-    echo "$(basename "$1" .obj),$2,$3,$4,$(faces "$6"),$rms,$5"
+    distance=$(rms "$1" "$6")
+    echo "$(basename "$1" .obj),$2,$3,$4,$(faces "$6"),$distance,$5"
 }
 
-target() {
-    awk -v n="$(faces "$1")" -v p="$2" \
-        'BEGIN { printf "%d\n", n * p / 100 + 0.5 }'
-}
-
-# A base mesh no finer than the coarsest level asked for.
-base_faces() {
-    for percent in $percents; do
-        target "$1" "$percent"
-    done | awk 'BEGIN { n = 200 } $1 < n { n = $1 } END { print n }'
-}
-
-# ours MODEL TOOL BAKE_OPTION...
+# ours MODEL KIND
 ours() {
-    model=$1
-    tool=$2
-    shift 2
-    "$PMESH" bake -q "$model" --no-attributes --position-bits "$bits" \
-        --base-faces "$(base_faces "$model")" "$@" -o "$dir/$tool.pmesh" \
-        >/dev/null
+    # shellcheck disable=SC2086,SC2046 # words on purpose
+    bake "$1" "$dir/$2.pmesh" "$2" "$bits" \
+        --base-faces $(base_faces "$1" $percents)
     for percent in $percents; do
-        want=$(target "$model" "$percent")
+        want=$(target "$1" "$percent")
         rm -f "$dir/level.obj"
-        "$PMESH" extract -q "$dir/$tool.pmesh" --faces "$want" \
+        "$PMESH" extract -q "$dir/$2.pmesh" --faces "$want" \
             -o "$dir/level.obj" || [ $? = 5 ] # the base mesh is finer
         if [ -e "$dir/level.obj" ]; then
-            measure "$model" "$tool" "$percent" "$want" 0 "$dir/level.obj"
+            measure "$1" "$2" "$percent" "$want" 0 "$dir/level.obj"
         fi
     done
 }
@@ -63,15 +41,16 @@ ours() {
 {
     echo model,tool,percent,target,faces,rms,cpu_s
     models | while read -r model; do
+        progress "$(basename "$model" .obj)"
         # shellcheck disable=SC2086 # words on purpose
-        "$simplify" "$model" "$dir" $percents >"$dir/peers.csv"
+        "$tools/bench_simplify" "$model" "$dir" $percents >"$dir/peers.csv"
         while IFS=, read -r tool percent target _ cpu; do
             measure "$model" "$tool" "$percent" "$target" "$cpu" \
                 "$dir/${tool}_$percent.obj"
         done <"$dir/peers.csv"
-        ours "$model" balanced
-        ours "$model" quality --profile quality --placement subset
-        ours "$model" optimal --profile quality --placement optimal
+        for kind in balanced quality optimal; do
+            ours "$model" "$kind"
+        done
     done
 } >"$OUT/quality.csv"
 
