@@ -8,19 +8,27 @@
 #include "encoder/enc_wedges.h"
 #include "format/alloc.h"
 
-/* See enc_candidate.h for the terms. Regular batches are as large as a matching
- * can be and keep the sampling even, which makes the stream small; the others
- * follow the quadrics, with the length to decide between flat places. Half or
- * twice any of these changes sizes by less than a hundredth. */
-static const enc_taste REGULAR = { .quadric = 10, .length = 0.75, .uneven = 1 };
-static const enc_taste QUALITY = { .quadric = 1, .length = 1e-7, .uneven = 0 };
-#define REGULAR_SHARE 0.49
-#define QUALITY_SHARE 0.33
+/*
+ * Batches by profile; see enc_candidate.h for the terms of taste. Large ones
+ * that keep the sampling even make the stream small, the guard keeps features.
+ */
+static const enc_batch_plan COMPACT = {
+    .taste = { .quadric = 2, .length = 0.75, .uneven = 3 },
+    .share = 0.499, .coherent = true, .guard = 1
+};
+static const enc_batch_plan FINE = {
+    .taste = { .quadric = 2, .length = 0.75, .uneven = 3 },
+    .share = 0.499, .coherent = true, .guard = 0.92
+};
+static const enc_batch_plan QUALITY = {
+    .taste = { .quadric = 1, .length = 3e-4, .uneven = 0 },
+    .share = 0.4, .coherent = true, .guard = 0.45
+};
 
-/* PMESH_BALANCED: so many regular batches at most, and none that starts below
+/* PMESH_BALANCED: so many fine batches at most, and none that starts below
  * this share of the vertices. */
-enum { REGULAR_BATCHES = 2 };
-#define REGULAR_VERTICES 0.4
+enum { FINE_BATCHES = 2 };
+#define FINE_VERTICES 0.4
 
 /* The run ends if this many batches in a row take less than a fiftieth. */
 enum { MAX_POOR_BATCHES = 3, POOR_SHARE = 50 };
@@ -153,17 +161,12 @@ static enc_batch_plan plan_batch(const enc_run *run)
 {
     const uint32_t n = run->surface.vertex_count;
     const pmesh_profile profile = run->config->profile;
-    const bool fine = run->out->batch_count < REGULAR_BATCHES &&
-                      n > REGULAR_VERTICES * run->mesh->vertex_count;
-    enc_batch_plan plan = { .taste = QUALITY };
-    double share = QUALITY_SHARE;
-
-    if (profile == PMESH_COMPACT || (profile == PMESH_BALANCED && fine)) {
-        plan.taste = REGULAR;
-        plan.coherent = true;
-        share = REGULAR_SHARE;
-    }
-    plan.limit = (uint32_t)(share * n);
+    const bool fine = run->out->batch_count < FINE_BATCHES &&
+                      n > FINE_VERTICES * run->mesh->vertex_count;
+    enc_batch_plan plan = profile == PMESH_COMPACT            ? COMPACT
+                          : profile == PMESH_BALANCED && fine ? FINE
+                                                              : QUALITY;
+    plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)
         plan.limit = 1;
     return plan;
