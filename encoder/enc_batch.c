@@ -23,9 +23,6 @@ enum {
 /* But not what costs so many times the median. */
 #define PARALLEL_LIMIT 30.0
 
-/* What a difference of direction counts, in squared mean edges. */
-#define PARALLEL_TURN 2.0
-
 /* An entry whose cost has grown by more than this goes back to the queue. */
 #define STALE_FACTOR 1.1
 
@@ -157,7 +154,7 @@ static bool is_free(const enc_run *run, uint32_t v)
 
 /* Finds the pairs to be preferred next to this one, before it goes. */
 static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
-                              enc_entry out[4])
+                              double turn, enc_entry out[4])
 {
     const enc_surface *s = &run->surface;
     enc_direction found[4];
@@ -189,7 +186,7 @@ static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
             off += (double)d * d;
         }
         const double price =
-            offer.cost + PARALLEL_TURN * run->pricing.edge_square * off;
+            offer.cost + turn * run->pricing.edge_square * off;
         out[count++] =
             (enc_entry){ enc_key(PARALLEL_FACTOR * price), entry_id(h, back) };
     }
@@ -278,7 +275,7 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
 
     enc_entry parallel[4];
     const unsigned count =
-        plan->coherent ? find_parallel(run, &pair, parallel) : 0;
+        plan->coherent ? find_parallel(run, &pair, plan->turn, parallel) : 0;
     contract(run, &pair, &offer, error);
     for (unsigned i = 0; i < count; i++)
         enc_queue_push(&run->queue, parallel[i]);

@@ -22,7 +22,8 @@ typedef struct enc_batch_plan {
     enc_taste taste;
     double share;   /* of the vertices to go, at most */
     uint32_t limit; /* the same as a number */
-    bool coherent;  /* prefer pairs parallel to those taken */
+    bool coherent;  /* prefer pairs parallel to those taken; */
+    double turn;    /* what another direction counts, in squared mean edges */
     double guard;   /* take only pairs whose quadric is among this share of
                        the smallest; 1: any */
 } enc_batch_plan;

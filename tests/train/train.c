@@ -181,7 +181,7 @@ static pmesh_status run(const pmesh_mesh_input *in,
     pmesh_status status = enc_mesh_import(in, config, &mesh, &report);
     if (status != PMESH_OK)
         return status;
-    status = enc_schedule_build(&mesh, config, &schedule);
+    status = enc_schedule_build(&mesh, config, 0, &schedule);
     if (status != PMESH_OK)
         return status;
     status = enc_replay_create(&replay, &mesh, &schedule,
