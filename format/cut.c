@@ -96,8 +96,10 @@ static void shape_points(shape *s, const pmesh_codec *c, uint32_t v,
         s->drift_count++;
     }
     const int64_t far = 1 << SUM_BITS;
-    for (int k = 0; k < 3 && s->drift_count; k++) {
-        const int64_t to = pmesh_scale(drift[k], shift) / s->drift_count;
+    for (int k = 0; k < 3; k++) {
+        const int64_t to = s->drift_count
+                               ? pmesh_scale(drift[k], shift) / s->drift_count
+                               : 0;
         s->drift[k] = (int16_t)(to < -far ? -far : to > far ? far : to);
     }
 }

@@ -18,7 +18,7 @@ typedef struct pmesh_residual_bits {
     pmesh_bit zero[PMESH_LEANS];
     pmesh_bit sign[PMESH_LEANS];
     pmesh_bit unary[PMESH_UNARY];
-} pmesh_residual_bits;
+} pmesh_residual_bits; /* in the order of pmesh_tables.residual */
 
 /* Of each bit there are two models: one for all coordinates, one for those at
  * this place (first, second, last) behind one that was as far off as this. */
