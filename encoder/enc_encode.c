@@ -148,14 +148,12 @@ static void write_names(job *j, const pmesh_mesh_input *in)
 static pmesh_status write_base(job *j)
 {
     pmesh_writer out = { j->room, 0, j->room_size, false };
-    const pmesh_status status =
-        enc_replay_base(&j->replay, &j->config, &out);
+    const pmesh_status status = enc_replay_base(&j->replay, &j->config, &out);
     if (status != PMESH_OK)
         return status;
     if (out.size > PMESH_MAX_CHUNK_SIZE)
         return PMESH_E_LIMIT;
-    enc_stream_chunk(&j->stream, PMESH_CHUNK_BASE, j->room,
-                     (uint32_t)out.size);
+    enc_stream_chunk(&j->stream, PMESH_CHUNK_BASE, j->room, (uint32_t)out.size);
     j->bytes_base = out.size;
     finish_level(j, 0);
     return PMESH_OK;
@@ -199,10 +197,9 @@ static pmesh_status write_block(job *j, uint32_t splits, double *bits)
     if (!pmesh_coder_finish(&coder))
         return PMESH_E_LIMIT;
     const size_t size = head.size + out.size;
-    enc_stream_chunk(&j->stream,
-                     r->splits_left ? PMESH_CHUNK_BLOCK
-                                    : PMESH_CHUNK_BLOCK_LAST,
-                     j->room, (uint32_t)size);
+    enc_stream_chunk(
+        &j->stream, r->splits_left ? PMESH_CHUNK_BLOCK : PMESH_CHUNK_BLOCK_LAST,
+        j->room, (uint32_t)size);
     *bits = 8.0 * (double)size / splits;
 
     pmesh_codec_sizes *s = &j->header.sizes;
@@ -220,9 +217,10 @@ static uint32_t splits_of_block(const job *j, double bits)
     const double room =
         j->config.profile == PMESH_COMPACT ? COMPACT_BLOCK : BLOCK;
     const double fit = 8.0 * room / (1.25 * bits + 8);
-    const uint32_t limit = fit < 1                        ? 1
-                           : fit < PMESH_MAX_BLOCK_SPLITS ? (uint32_t)fit
-                                                          : PMESH_MAX_BLOCK_SPLITS;
+    const uint32_t limit = fit < 1 ? 1
+                           : fit < PMESH_MAX_BLOCK_SPLITS
+                               ? (uint32_t)fit
+                               : PMESH_MAX_BLOCK_SPLITS;
     return j->replay.splits_left < limit ? j->replay.splits_left : limit;
 }
 
@@ -287,13 +285,11 @@ static void fill_report(job *j, uint64_t header_size, uint64_t file_size)
     r->base_vertices = h->levels[0].vertices;
     r->level_count = h->level_count;
     for (uint32_t i = 0; i < h->level_count; i++)
-        r->levels[i] = (pmesh_level){
-            .bytes = header_size + h->levels[i].bytes,
-            .faces = h->levels[i].faces,
-            .mesh_vertices = h->levels[i].vertices,
-            .vertices = h->levels[i].wedges,
-            .error = h->levels[i].error
-        };
+        r->levels[i] = (pmesh_level){ .bytes = header_size + h->levels[i].bytes,
+                                      .faces = h->levels[i].faces,
+                                      .mesh_vertices = h->levels[i].vertices,
+                                      .vertices = h->levels[i].wedges,
+                                      .error = h->levels[i].error };
     r->bytes = file_size;
     r->bytes_base = j->bytes_base;
     r->bytes_connectivity = c->part_size[0];
@@ -406,9 +402,8 @@ static pmesh_status run(const pmesh_mesh_input *in,
 }
 
 pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
-                          const pmesh_encoder_config *config,
-                          pmesh_write write, void *user,
-                          pmesh_encode_report *report)
+                          const pmesh_encoder_config *config, pmesh_write write,
+                          void *user, pmesh_encode_report *report)
 {
     pmesh_encode_report unwanted;
     if (!mesh || !config || !write || !config_is_sound(config))

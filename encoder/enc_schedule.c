@@ -15,17 +15,29 @@
 static const enc_batch_plan COMPACT[] = {
     /* The first suits most; the second, meshes it happens to fail on. */
     { .taste = { .quadric = 2, .length = 0.75, .uneven = 3 },
-      .share = 0.499, .coherent = true, .guard = 1, .turn = 2 },
+      .share = 0.499,
+      .coherent = true,
+      .guard = 1,
+      .turn = 2 },
     { .taste = { .quadric = 2, .length = 0.4, .uneven = 5 },
-      .share = 0.48, .coherent = true, .guard = 1, .turn = 3 },
+      .share = 0.48,
+      .coherent = true,
+      .guard = 1,
+      .turn = 3 },
 };
 static const enc_batch_plan FINE = {
     .taste = { .quadric = 2, .length = 0.75, .uneven = 3 },
-    .share = 0.499, .coherent = true, .guard = 0.92, .turn = 2
+    .share = 0.499,
+    .coherent = true,
+    .guard = 0.92,
+    .turn = 2
 };
 static const enc_batch_plan QUALITY = {
     .taste = { .quadric = 1, .length = 3e-4, .uneven = 0 },
-    .share = 0.4, .coherent = true, .guard = 0.45, .turn = 2
+    .share = 0.4,
+    .coherent = true,
+    .guard = 0.45,
+    .turn = 2
 };
 
 /* PMESH_BALANCED: so many fine batches at most, and none that starts below

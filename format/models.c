@@ -5,7 +5,7 @@
 enum { ALONG_START = 900, ACROSS_START = 400 };
 
 #define COUNT(array, item) (sizeof(array) / sizeof(item))
-#define INIT_BITS(array) \
+#define INIT_BITS(array)                                                       \
     pmesh_bits_init((pmesh_bit *)(array), COUNT(array, pmesh_bit))
 
 static void residual_bits_init(pmesh_residual_bits *b, const uint8_t *from)
@@ -24,8 +24,7 @@ static void residual_init(pmesh_residual_model *m, const pmesh_tables *start)
             for (int far = 0; far < PMESH_FAR; far++)
                 residual_bits_init(&m->here[scale][place][far], from);
     }
-    pmesh_bits_start((pmesh_bit *)m->low, COUNT(m->low, pmesh_bit),
-                     start->low);
+    pmesh_bits_start((pmesh_bit *)m->low, COUNT(m->low, pmesh_bit), start->low);
     pmesh_number_init(&m->escape);
 }
 
@@ -55,8 +54,10 @@ static void weights_init(int32_t *to, const int16_t *from, size_t count,
 
 static void cut_init(pmesh_cut_weights *w, const pmesh_tables *start)
 {
-    weights_init((int32_t *)w->shape, start->shape, COUNT(w->shape, int32_t), 4);
-    weights_init((int32_t *)w->degree, start->degree, COUNT(w->degree, int32_t), 256);
+    weights_init((int32_t *)w->shape, start->shape, COUNT(w->shape, int32_t),
+                 4);
+    weights_init((int32_t *)w->degree, start->degree, COUNT(w->degree, int32_t),
+                 256);
     weights_init((int32_t *)w->state, start->state, COUNT(w->state, int32_t),
                  256);
     weights_init((int32_t *)w->span, start->span, COUNT(w->span, int32_t), 256);
@@ -76,7 +77,8 @@ static void predict_init(pmesh_models *m, const pmesh_tables *start)
 void pmesh_models_init(pmesh_models *m, const pmesh_tables *start)
 {
     pmesh_bits_start(m->flag, PMESH_FLAG_CONTEXTS, start->flag);
-    pmesh_bits_start((pmesh_bit *)m->cut, COUNT(m->cut, pmesh_bit), start->rank);
+    pmesh_bits_start((pmesh_bit *)m->cut, COUNT(m->cut, pmesh_bit),
+                     start->rank);
     cut_init(&m->cut_weights, start);
     predict_init(m, start);
     INIT_BITS(m->base);
@@ -90,8 +92,8 @@ void pmesh_models_init(pmesh_models *m, const pmesh_tables *start)
             pmesh_number_init(&m->value[i][k]);
     residual_init(&m->residual[0], start);
     residual_init(&m->residual[1], start);
-    means_init((pmesh_mean *)m->along, start->along, COUNT(m->along, pmesh_mean),
-               ALONG_START);
-    means_init((pmesh_mean *)m->across, start->across, COUNT(m->across, pmesh_mean),
-               ACROSS_START);
+    means_init((pmesh_mean *)m->along, start->along,
+               COUNT(m->along, pmesh_mean), ALONG_START);
+    means_init((pmesh_mean *)m->across, start->across,
+               COUNT(m->across, pmesh_mean), ACROSS_START);
 }
