@@ -39,6 +39,13 @@ static const enc_batch_plan QUALITY = {
     .guard = 0.45,
     .turn = 2
 };
+/* With moved parents, who want the best levels for their bytes: the order of
+ * the quadrics, length only to decide between flat places. */
+static const enc_batch_plan BEST = {
+    .taste = { .quadric = 1, .length = 1e-7, .uneven = 0 },
+    .share = 0.33,
+    .guard = 1
+};
 
 /* PMESH_BALANCED: so many fine batches at most, and none that starts below
  * this share of the vertices. */
@@ -180,7 +187,8 @@ static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
                       n > FINE_VERTICES * run->mesh->vertex_count;
     enc_batch_plan plan = profile == PMESH_COMPACT            ? COMPACT[variant]
                           : profile == PMESH_BALANCED && fine ? FINE
-                                                              : QUALITY;
+                          : run->config->placement == PMESH_OPTIMAL ? BEST
+                                                                    : QUALITY;
     plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)
         plan.limit = 1;
