@@ -135,8 +135,8 @@ static ref_vec beside(const frame *m)
 {
     int64_t a = m->j + 1, b = m->j - 1;
     if (m->ring->open) {
-        a = a < m->n ? a : m->n - 1;
-        b = b > 0 ? b : 0;
+        a = 0;
+        b = m->n - 1;
     } else {
         a = a % m->n;
         b = (b + m->n) % m->n;

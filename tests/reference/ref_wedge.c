@@ -87,6 +87,10 @@ static void read_place(ref *r, uint32_t corner)
 static bool read_corner(ref *r, uint32_t corner, uint32_t g, uint32_t s)
 {
     ref_wedge_models *m = &r->wedge_models;
+    if (g == REF_NONE) {
+        g = s;
+        s = REF_NONE;
+    }
     if (g != REF_NONE) {
         const int agree = s == REF_NONE ? 0 : g == s ? 1 : 2;
         if (!ref_bit(&r->in, &m->corner[agree])) {
@@ -151,9 +155,7 @@ static uint32_t next_or_none(uint32_t h)
 
 static void add_other(change *c, uint32_t corner, uint32_t g, uint32_t s)
 {
-    c->other[c->others++] = (other){
-        corner, { g != REF_NONE ? g : s, s != REF_NONE ? s : g }
-    };
+    c->other[c->others++] = (other){ corner, { g, s } };
 }
 
 /* The corners of u, whose wedges of before go to coarse[]. */
@@ -207,6 +209,11 @@ static void list_others(const ref *r, change *c, uint32_t a, uint32_t b)
     }
 }
 
+static uint32_t only_guess(const other *o)
+{
+    return o->guess[0] != REF_NONE ? o->guess[0] : o->guess[1];
+}
+
 static int ordinary_context(const change *c)
 {
     for (int i = 1; i < c->count; i++)
@@ -214,7 +221,8 @@ static int ordinary_context(const change *c)
             c->coarse[i] != c->coarse[i - 1])
             return 2;
     for (int i = 0; i < c->others; i++)
-        if (c->other[i].guess[0] != c->other[i].guess[1])
+        if (c->other[i].guess[1] != REF_NONE &&
+            c->other[i].guess[0] != c->other[i].guess[1])
             return 1;
     return 0;
 }
@@ -225,9 +233,9 @@ static void take_ordinary(ref *r, const change *c)
     for (int i = 1; i < c->count; i++)
         r->edge[c->corner[i]].wedge = c->first_wedge;
     for (int i = 0; i < c->others; i++) {
-        ref_check(r, c->other[i].guess[0] != REF_NONE,
-                  "6.6: a missing guess");
-        r->edge[c->other[i].corner].wedge = c->other[i].guess[0];
+        const uint32_t guess = only_guess(&c->other[i]);
+        ref_check(r, guess != REF_NONE, "6.6: a missing guess");
+        r->edge[c->other[i].corner].wedge = guess;
     }
 }
 
@@ -272,7 +280,7 @@ static void read_others(ref *r, const change *c)
         if (!read_corner(r, o->corner, o->guess[0], o->guess[1]))
             continue;
         const uint32_t made = r->edge[o->corner].wedge;
-        uint32_t like = o->guess[0];
+        uint32_t like = only_guess(o);
         if (like == REF_NONE) {
             REF_SEEN(wedge_without_guess);
             like = first_wedge_of(r, r->edge[o->corner].vertex, made);
@@ -297,7 +305,7 @@ static void set_parents(ref *r, const change *c)
         if (*from != REF_NONE)
             continue;
         REF_SEEN(wedge_without_coarse);
-        *from = c->others > 0 ? c->other[0].guess[0] : REF_NONE;
+        *from = only_guess(&c->other[0]);
         if (*from == REF_NONE)
             *from = first_coarse(c);
     }
