@@ -20,9 +20,8 @@ enum {
 /* Puts a pair parallel to a chosen one before all that are not. */
 #define PARALLEL_FACTOR 0.001
 
-/* But not what costs so many times the median: features would be cut across
- * for the sake of a pattern. */
-#define PARALLEL_LIMIT 10.0
+/* But not what costs so many times the median. */
+#define PARALLEL_LIMIT 30.0
 
 /* An entry whose cost has grown by more than this goes back to the queue. */
 #define STALE_FACTOR 1.1
@@ -68,15 +67,17 @@ static bool unclean(uint8_t state, bool back)
     return state & (back ? UNCLEAN_BACK : UNCLEAN_FORTH);
 }
 
-static enc_entry make_entry(const enc_run *run, uint32_t h, bool back)
+/* Its estimated quadric goes to *quadric. */
+static enc_entry make_entry(const enc_run *run, uint32_t h, bool back,
+                            double *quadric)
 {
     const enc_surface *s = &run->surface;
     const enc_pair pair = enc_surface_pair(s, h, back);
     const uint32_t last = unclean(run->edge_state[h], back) ? ENC_KEY_LAST : 0;
+    const enc_offer offer = enc_pricing_estimate(&run->pricing, s, &pair);
 
-    return (enc_entry){ last | enc_key(enc_pricing_estimate(&run->pricing, s,
-                                                            &pair)),
-                        entry_id(h, back) };
+    *quadric = offer.quadric;
+    return (enc_entry){ last | enc_key(offer.cost), entry_id(h, back) };
 }
 
 /* What the edge of h may do; the ring of its start is marked. */
@@ -104,24 +105,31 @@ static void queue_edge(enc_run *run, uint32_t h)
 {
     const uint8_t state = examine_edge(&run->surface, h);
     enc_entry best = { UINT32_MAX, 0 };
+    double best_quadric = 0;
 
     run->edge_state[h] = state;
     for (int back = 0; back < 2; back++) {
         if (!may(state, back != 0))
             continue;
-        const enc_entry entry = make_entry(run, h, back);
-        if (entry.key < best.key)
+        double quadric;
+        const enc_entry entry = make_entry(run, h, back, &quadric);
+        if (entry.key < best.key) {
             best = entry;
+            best_quadric = quadric;
+        }
     }
-    if (state)
+    if (state) {
         enc_queue_add(&run->queue, best);
+        enc_quantile_add(&run->quadrics, best_quadric);
+    }
 }
 
-static void collect(enc_run *run)
+static void collect(enc_run *run, const enc_batch_plan *plan)
 {
     enc_surface *s = &run->surface;
 
     enc_queue_clear(&run->queue);
+    enc_quantile_clear(&run->quadrics);
     for (uint32_t v = 0; v < run->mesh->vertex_count; v++) {
         uint32_t h = s->first[v];
         if (h == ENC_NONE)
@@ -136,6 +144,7 @@ static void collect(enc_run *run)
     }
     enc_queue_sort(&run->queue);
     run->parallel_limit = PARALLEL_LIMIT * enc_queue_median(&run->queue);
+    run->guard = enc_quantile_at(&run->quadrics, plan->guard);
 }
 
 static bool is_free(const enc_run *run, uint32_t v)
@@ -145,7 +154,7 @@ static bool is_free(const enc_run *run, uint32_t v)
 
 /* Finds the pairs to be preferred next to this one, before it goes. */
 static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
-                              enc_entry out[4])
+                              double turn, enc_entry out[4])
 {
     const enc_surface *s = &run->surface;
     enc_direction found[4];
@@ -166,8 +175,8 @@ static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
         if (!may(state, back) || unclean(state, back) ||
             !is_free(run, other.child) || !is_free(run, other.parent))
             continue;
-        const double cost = enc_pricing_estimate(&run->pricing, s, &other);
-        if (cost > run->parallel_limit)
+        const enc_offer offer = enc_pricing_estimate(&run->pricing, s, &other);
+        if (offer.cost > run->parallel_limit || offer.quadric > run->guard)
             continue;
         double off = 0;
         for (int k = 0; k < 3; k++) {
@@ -176,7 +185,8 @@ static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
                 s->position[other.child][k] + s->position[other.parent][k];
             off += (double)d * d;
         }
-        const double price = cost + run->pricing.edge_square * off;
+        const double price =
+            offer.cost + turn * run->pricing.edge_square * off;
         out[count++] =
             (enc_entry){ enc_key(PARALLEL_FACTOR * price), entry_id(h, back) };
     }
@@ -241,6 +251,8 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
         return false;
 
     const enc_offer offer = enc_pricing_offer(&run->pricing, s, &pair);
+    if (offer.quadric > run->guard)
+        return false;
     if (!plan->coherent &&
         offer.cost > STALE_FACTOR * enc_key_cost(entry.key)) {
         const uint32_t key = enc_key(offer.cost) | (entry.key & ENC_KEY_LAST);
@@ -252,7 +264,8 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
     if (enc_surface_flips(s, &pair, offer.place)) {
         if (may(run->edge_state[h], !back) && !(run->edge_state[h] & TURNED)) {
             run->edge_state[h] |= TURNED;
-            enc_queue_push(&run->queue, make_entry(run, h, !back));
+            double quadric;
+            enc_queue_push(&run->queue, make_entry(run, h, !back, &quadric));
         }
         return false;
     }
@@ -262,7 +275,7 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
 
     enc_entry parallel[4];
     const unsigned count =
-        plan->coherent ? find_parallel(run, &pair, parallel) : 0;
+        plan->coherent ? find_parallel(run, &pair, plan->turn, parallel) : 0;
     contract(run, &pair, &offer, error);
     for (unsigned i = 0; i < count; i++)
         enc_queue_push(&run->queue, parallel[i]);
@@ -276,7 +289,7 @@ uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
 
     enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
                       run->out->contraction_count == 0);
-    collect(run);
+    collect(run, plan);
     while (accepted < plan->limit && !enc_run_done(run) &&
            enc_queue_pop(&run->queue, &entry)) {
         if ((entry.key & ENC_KEY_LAST) && accepted >= CLEAN_SHARE * plan->limit)

@@ -13,14 +13,19 @@
 #define ENC_BATCH_H
 
 #include "encoder/enc_candidate.h"
+#include "encoder/enc_quantile.h"
 #include "encoder/enc_queue.h"
 #include "encoder/enc_schedule.h"
 #include "encoder/enc_surface.h"
 
 typedef struct enc_batch_plan {
     enc_taste taste;
-    uint32_t limit; /* pairs */
-    bool coherent;  /* prefer pairs parallel to those taken */
+    double share;   /* of the vertices to go, at most */
+    uint32_t limit; /* the same as a number */
+    bool coherent;  /* prefer pairs parallel to those taken; */
+    double turn;    /* what another direction counts, in squared mean edges */
+    double guard;   /* take only pairs whose quadric is among this share of
+                       the smallest; 1: any */
 } enc_batch_plan;
 
 /* A contraction run; batches leave their mark in `out`. */
@@ -31,6 +36,8 @@ typedef struct enc_run {
     enc_surface surface;
     enc_pricing pricing;
     enc_queue queue;
+    enc_quantile quadrics; /* of the edges, the better direction */
+    double guard;
     uint8_t *edge_state; /* per half-edge: what collecting found */
     uint8_t *taken;      /* per vertex: batch_count when last in a pair, + 1 */
     float *drift;        /* per vertex: squared distance from the original */

@@ -139,8 +139,8 @@ static double regularity(const enc_pricing *p, const enc_pair *pair,
                              p->taste.uneven * p->unevenness[pair->child]);
 }
 
-double enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
-                            const enc_pair *pair)
+enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
+                               const enc_pair *pair)
 {
     const enc_quadric child = recall(p, pair->child);
     const enc_quadric parent = recall(p, pair->parent);
@@ -160,7 +160,9 @@ double enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
             best_of_three(&sum, half, x);
         value = enc_quadric_value(&sum, x);
     }
-    return p->taste.quadric * value + regularity(p, pair, dot(edge, edge));
+    return (enc_offer){ .cost = p->taste.quadric * value +
+                                regularity(p, pair, dot(edge, edge)),
+                        .quadric = value };
 }
 
 /* Where the parent should go, relative to the midpoint. */
@@ -244,6 +246,7 @@ enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
     for (int i = 0; i < 3; i++)
         x[i] = offer.place[i] - middle[i];
     const double value = enc_quadric_value(&sum, x);
+    offer.quadric = value;
     offer.cost =
         p->taste.quadric * value + regularity(p, pair, dot(edge, edge));
     offer.distance = sum.weight > 0 ? value / sum.weight : 0;

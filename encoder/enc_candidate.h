@@ -39,6 +39,7 @@ typedef struct enc_pricing {
 typedef struct enc_offer {
     int32_t place[3]; /* where the parent will be */
     double cost;
+    double quadric;  /* the part of it that is Q(place) */
     double distance; /* squared, in steps: the quadric's mean at the place */
 } enc_offer;
 
@@ -52,10 +53,10 @@ void enc_pricing_destroy(const enc_mesh *mesh, enc_pricing *pricing);
 void enc_pricing_begin(enc_pricing *pricing, const enc_surface *s,
                        enc_taste taste, bool first_time);
 
-/* From the quadrics at the start of the batch; cheap. With
- * PMESH_OPTIMAL the place is not on the grid yet and not reported. */
-double enc_pricing_estimate(const enc_pricing *pricing, const enc_surface *s,
-                            const enc_pair *pair);
+/* From the quadrics at the start of the batch; cheap. With PMESH_OPTIMAL the
+ * place is not on the grid yet. Only cost and quadric are filled in. */
+enc_offer enc_pricing_estimate(const enc_pricing *pricing, const enc_surface *s,
+                               const enc_pair *pair);
 
 /* From the surface as it is now; the final word. */
 enc_offer enc_pricing_offer(const enc_pricing *pricing, const enc_surface *s,

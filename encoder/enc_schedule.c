@@ -8,19 +8,42 @@
 #include "encoder/enc_wedges.h"
 #include "format/alloc.h"
 
-/* See enc_candidate.h for the terms. Regular batches are as large as a matching
- * can be and keep the sampling even, which makes the stream small; the others
- * follow the quadrics, with the length to decide between flat places. Half or
- * twice any of these changes sizes by less than a hundredth. */
-static const enc_taste REGULAR = { .quadric = 10, .length = 0.75, .uneven = 1 };
-static const enc_taste QUALITY = { .quadric = 1, .length = 1e-7, .uneven = 0 };
-#define REGULAR_SHARE 0.49
-#define QUALITY_SHARE 0.33
+/*
+ * Batches by profile; see enc_candidate.h for the terms of taste. Large ones
+ * that keep the sampling even make the stream small, the guard keeps features.
+ */
+static const enc_batch_plan COMPACT[] = {
+    /* The first suits most; the second, meshes it happens to fail on. */
+    { .taste = { .quadric = 2, .length = 0.75, .uneven = 3 },
+      .share = 0.499,
+      .coherent = true,
+      .guard = 1,
+      .turn = 2 },
+    { .taste = { .quadric = 2, .length = 0.4, .uneven = 5 },
+      .share = 0.48,
+      .coherent = true,
+      .guard = 1,
+      .turn = 3 },
+};
+static const enc_batch_plan FINE = {
+    .taste = { .quadric = 2, .length = 0.75, .uneven = 3 },
+    .share = 0.499,
+    .coherent = true,
+    .guard = 0.92,
+    .turn = 2
+};
+static const enc_batch_plan QUALITY = {
+    .taste = { .quadric = 1, .length = 3e-4, .uneven = 0 },
+    .share = 0.4,
+    .coherent = true,
+    .guard = 0.45,
+    .turn = 2
+};
 
-/* PMESH_BALANCED: so many regular batches at most, and none that starts below
+/* PMESH_BALANCED: so many fine batches at most, and none that starts below
  * this share of the vertices. */
-enum { REGULAR_BATCHES = 2 };
-#define REGULAR_VERTICES 0.4
+enum { FINE_BATCHES = 2 };
+#define FINE_VERTICES 0.4
 
 /* The run ends if this many batches in a row take less than a fiftieth. */
 enum { MAX_POOR_BATCHES = 3, POOR_SHARE = 50 };
@@ -149,34 +172,29 @@ static void set_targets(enc_run *run)
     run->error_limit = config->base_error > 0 ? steps * steps : INFINITY;
 }
 
-static enc_batch_plan plan_batch(const enc_run *run)
+static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
 {
     const uint32_t n = run->surface.vertex_count;
     const pmesh_profile profile = run->config->profile;
-    const bool fine = run->out->batch_count < REGULAR_BATCHES &&
-                      n > REGULAR_VERTICES * run->mesh->vertex_count;
-    enc_batch_plan plan = { .taste = QUALITY };
-    double share = QUALITY_SHARE;
-
-    if (profile == PMESH_COMPACT || (profile == PMESH_BALANCED && fine)) {
-        plan.taste = REGULAR;
-        plan.coherent = true;
-        share = REGULAR_SHARE;
-    }
-    plan.limit = (uint32_t)(share * n);
+    const bool fine = run->out->batch_count < FINE_BATCHES &&
+                      n > FINE_VERTICES * run->mesh->vertex_count;
+    enc_batch_plan plan = profile == PMESH_COMPACT            ? COMPACT[variant]
+                          : profile == PMESH_BALANCED && fine ? FINE
+                                                              : QUALITY;
+    plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)
         plan.limit = 1;
     return plan;
 }
 
-static void run_batches(enc_run *run)
+static void run_batches(enc_run *run, uint32_t variant)
 {
     enc_schedule *out = run->out;
     unsigned poor = 0;
 
     while (!enc_run_done(run) && out->batch_count < PMESH_MAX_LEVELS - 1 &&
            poor < MAX_POOR_BATCHES) {
-        const enc_batch_plan plan = plan_batch(run);
+        const enc_batch_plan plan = plan_batch(run, variant);
         const uint32_t n = run->surface.vertex_count;
         const uint32_t taken = enc_batch_contract(run, &plan);
 
@@ -200,9 +218,15 @@ static pmesh_status finish_wedges(enc_run *run)
     return enc_wedges_finish(run->mesh, parent, out->wedge_parent);
 }
 
+uint32_t enc_schedule_variants(const pmesh_encoder_config *config)
+{
+    return config->profile == PMESH_COMPACT ? sizeof COMPACT / sizeof *COMPACT
+                                            : 1;
+}
+
 pmesh_status enc_schedule_build(const enc_mesh *mesh,
                                 const pmesh_encoder_config *config,
-                                enc_schedule *out)
+                                uint32_t variant, enc_schedule *out)
 {
     enc_run run = { 0 };
     pmesh_status status = schedule_create(mesh, out);
@@ -212,7 +236,7 @@ pmesh_status enc_schedule_build(const enc_mesh *mesh,
     status = run_create(mesh, config, out, &run);
     if (status == PMESH_OK) {
         set_targets(&run);
-        run_batches(&run);
+        run_batches(&run, variant);
         out->position = run.surface.position;
         run.surface.position = NULL;
         if (run.cancelled)

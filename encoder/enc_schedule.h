@@ -50,12 +50,15 @@ typedef struct enc_schedule {
     uint32_t *wedge_parent;
 } enc_schedule;
 
+/* How many ways there are to try for the config: at least 1. */
+uint32_t enc_schedule_variants(const pmesh_encoder_config *config);
+
 /* Contracts `mesh` (which is not changed) down to the base mesh that the
- * config asks for. `progress` may cancel. Returns PMESH_OK or a status of
+ * config asks for, in the given way. `progress` may cancel. Returns PMESH_OK or a status of
  * pmesh_encode() with *out empty. */
 pmesh_status enc_schedule_build(const enc_mesh *mesh,
                                 const pmesh_encoder_config *config,
-                                enc_schedule *out);
+                                uint32_t variant, enc_schedule *out);
 
 void enc_schedule_destroy(enc_schedule *schedule);
 

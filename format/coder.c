@@ -2,20 +2,23 @@
 #include "format/coder.h"
 
 #define PROBABILITY_BITS 16
-#define FAST_USES 30  /* the estimates become exponential averages with */
-#define PRIOR_USES 12 /* a probability from a table counts as many bits */
-#define SLOW_USES 127 /* these lengths; before, they are plain averages */
+#define FAST_USES        30 /* the estimates become exponential averages with */
+#define PRIOR_USES       12 /* a probability from a table counts as many bits */
+#define SLOW_USES        127 /* these lengths; before, they are plain averages */
 
 /* 2 / (2 uses + 3) in 1/32768: the step of an average towards a new value. */
 #define RATE_BITS 15
-#define R(n) (65536 / (2 * (n) + 3))
-#define R4(n) R(n), R((n) + 1), R((n) + 2), R((n) + 3)
-#define R32(n) \
-    R4(n), R4((n) + 4), R4((n) + 8), R4((n) + 12), R4((n) + 16), \
-        R4((n) + 20), R4((n) + 24), R4((n) + 28)
+#define R(n)      (65536 / (2 * (n) + 3))
+#define R4(n)     R(n), R((n) + 1), R((n) + 2), R((n) + 3)
+#define R32(n)                                                                 \
+    R4(n), R4((n) + 4), R4((n) + 8), R4((n) + 12), R4((n) + 16), R4((n) + 20), \
+        R4((n) + 24), R4((n) + 28)
 
 static const uint16_t rate[SLOW_USES + 1] = {
-    R32(0), R32(32), R32(64), R32(96),
+    R32(0),
+    R32(32),
+    R32(64),
+    R32(96),
 };
 
 /* Keeps a bit's cost below about 11 bits and above 1/1400. */
@@ -99,8 +102,8 @@ static void adapt(pmesh_bit *m, unsigned bit)
     const int32_t target = bit ? 0 : 65535;
     const int32_t fast = rate[m->uses < FAST_USES ? m->uses : FAST_USES];
     m->fast = (uint16_t)(m->fast + ((target - m->fast) * fast >> RATE_BITS));
-    m->slow = (uint16_t)(m->slow +
-                         ((target - m->slow) * rate[m->uses] >> RATE_BITS));
+    m->slow =
+        (uint16_t)(m->slow + ((target - m->slow) * rate[m->uses] >> RATE_BITS));
     if (m->uses < SLOW_USES)
         m->uses++;
 }
@@ -108,8 +111,9 @@ static void adapt(pmesh_bit *m, unsigned bit)
 /* One bit that is 0 with probability p / 65536. */
 static inline unsigned code(pmesh_coder *c, uint32_t p, unsigned bit)
 {
-    p = p < PROBABILITY_MIN ? PROBABILITY_MIN
-                            : p > PROBABILITY_MAX ? PROBABILITY_MAX : p;
+    p = p < PROBABILITY_MIN   ? PROBABILITY_MIN
+        : p > PROBABILITY_MAX ? PROBABILITY_MAX
+                              : p;
     const uint32_t bound = (c->range >> PROBABILITY_BITS) * p;
 
     if (!c->encoding)

@@ -30,11 +30,11 @@ enum { MEMBERS = 2 * PMESH_MAX_RING + LANES };
 typedef struct shape {
     uint32_t count;
     bool open;
-    int32_t x[3][MEMBERS];
-    int32_t sum[3][MEMBERS + 1]; /* of the members before */
+    int16_t x[3][MEMBERS];
+    int16_t sum[3][MEMBERS + 1]; /* of the members before */
     int32_t square[MEMBERS + 1];
     int32_t per_size; /* 2^27 / mean square distance from v, <= 2^12 */
-    int32_t drift[3];    /* mean displacement of newborn members ... */
+    int16_t drift[3];    /* mean displacement of newborn members ... */
     int32_t drift_count; /* ... if there are any */
     pmesh_cut_weights *weights;
     /* Weights of a member as wing a, b: of its degree, of the states around;
@@ -73,12 +73,12 @@ static void shape_points(shape *s, const pmesh_codec *c, uint32_t v,
 {
     const int32_t *at = c->mesh.position[v];
     const uint32_t n = ring->count;
+    int32_t d[PMESH_MAX_RING][3];
     uint32_t largest = 0;
     for (uint32_t i = 0; i < n; i++)
         for (int k = 0; k < 3; k++) {
-            const int32_t d = c->mesh.position[ring->vertex[i]][k] - at[k];
-            s->x[k][i] = d;
-            largest |= (uint32_t)(d < 0 ? -d : d);
+            d[i][k] = c->mesh.position[ring->vertex[i]][k] - at[k];
+            largest |= (uint32_t)(d[i][k] < 0 ? -d[i][k] : d[i][k]);
         }
     const int shift = SUM_BITS - (int)pmesh_bit_length(n) -
                       (int)pmesh_bit_length(largest);
@@ -87,7 +87,7 @@ static void shape_points(shape *s, const pmesh_codec *c, uint32_t v,
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t x = ring->vertex[i];
         for (int k = 0; k < 3; k++)
-            s->x[k][i] = (int32_t)pmesh_scale(s->x[k][i], shift);
+            s->x[k][i] = (int16_t)pmesh_scale(d[i][k], shift);
         if (c->state[x] != PMESH_NEWBORN)
             continue;
         const int32_t *p = c->mesh.position[c->mesh.parent[x]];
@@ -96,9 +96,11 @@ static void shape_points(shape *s, const pmesh_codec *c, uint32_t v,
         s->drift_count++;
     }
     const int64_t far = 1 << SUM_BITS;
-    for (int k = 0; k < 3 && s->drift_count; k++) {
-        const int64_t d = pmesh_scale(drift[k], shift) / s->drift_count;
-        s->drift[k] = (int32_t)(d < -far ? -far : d > far ? far : d);
+    for (int k = 0; k < 3; k++) {
+        const int64_t to = s->drift_count
+                               ? pmesh_scale(drift[k], shift) / s->drift_count
+                               : 0;
+        s->drift[k] = (int16_t)(to < -far ? -far : to > far ? far : to);
     }
 }
 
@@ -106,12 +108,12 @@ static void shape_sums(shape *s)
 {
     const uint32_t n = s->count, end = (s->open ? n : 2 * n) + LANES;
     for (int k = 0; k < 3; k++) {
-        int32_t *x = s->x[k], *sum = s->sum[k];
+        int16_t *x = s->x[k], *sum = s->sum[k];
         for (uint32_t i = n; i < end; i++)
             x[i] = s->open ? 0 : x[i - n];
         sum[0] = 0;
         for (uint32_t i = 0; i < end; i++)
-            sum[i + 1] = sum[i] + x[i];
+            sum[i + 1] = (int16_t)(sum[i] + x[i]);
     }
     s->square[0] = 0;
     for (uint32_t i = 0; i < end; i++)
@@ -169,17 +171,25 @@ static int32_t *shape_weights(const shape *s, bool ghost)
 
 /* A row of options in lanes: what is to be known of each. */
 typedef struct row {
-    int32_t part[3][LANES];   /* sum of the members that u gets, */
+    int16_t part[3][LANES];   /* sum of the members that u gets, */
     int32_t square[LANES];    /* and of their squares */
-    int32_t a[3][LANES], b[3][LANES]; /* the wings */
-    int32_t to_u[LANES], to_v[LANES]; /* 2^15 / size of both rings */
+    int16_t a[3][LANES], b[3][LANES]; /* the wings */
+    int16_t to_u[LANES], to_v[LANES]; /* 2^15 / size of both rings */
     int32_t place[LANES];     /* weights that do not depend on shape */
 } row;
 
-static inline int32_t term(int32_t square, int32_t per_size)
+/* A term of all lanes and, weighed, its part of their costs. */
+static void add_term(const int32_t square[LANES], int32_t per_size,
+                     int16_t weight, int16_t *restrict term,
+                     int32_t *restrict cost)
 {
-    const int32_t t = (square >> 10) * per_size >> 9;
-    return t > TERM_LIMIT ? TERM_LIMIT : t < -TERM_LIMIT ? -TERM_LIMIT : t;
+    for (int i = 0; i < LANES; i++) {
+        int32_t t = (square[i] >> 10) * per_size >> 9;
+        t = t > TERM_LIMIT ? TERM_LIMIT : t;
+        t = t < -TERM_LIMIT ? -TERM_LIMIT : t;
+        term[i] = (int16_t)t;
+        cost[i] += weight * (int16_t)t;
+    }
 }
 
 /* Spread of u's ring, off-centre of v, reach of the wings, their angle, and
@@ -188,40 +198,31 @@ static void weigh(const shape *s, const row *r, const int32_t w[TERMS],
                   int16_t out[TERMS][LANES], int32_t cost[LANES])
 {
     const int32_t per = s->per_size, drifts = s->drift_count ? per : 0;
-    const int32_t w0 = w[0] >> 4, w1 = w[1] >> 4, w2 = w[2] >> 4,
-                  w3 = w[3] >> 4, w4 = w[4] >> 4;
-    int32_t mean_square[LANES] = { 0 }, off[LANES] = { 0 },
-            reach[LANES] = { 0 }, angle[LANES] = { 0 }, stray[LANES] = { 0 };
+    int32_t square[TERMS][LANES] = { { 0 } };
 
     for (int k = 0; k < 3; k++) {
-        const int32_t all = s->sum[k][s->count], drift = s->drift[k];
+        const int16_t all = s->sum[k][s->count], drift = s->drift[k];
+        const int16_t *part = r->part[k], *a = r->a[k], *b = r->b[k];
         for (int i = 0; i < LANES; i++) {
-            const int32_t a = r->a[k][i], b = r->b[k][i];
-            const int32_t mean = r->part[k][i] * r->to_u[i] >> SHARE_BITS;
-            const int32_t rest =
-                (all - r->part[k][i] + a + b + mean) * r->to_v[i] >>
-                SHARE_BITS;
-            mean_square[i] += mean * mean;
-            off[i] += rest * rest;
-            reach[i] += a * a + b * b;
-            angle[i] += a * b;
-            stray[i] += (mean - drift) * (mean - drift);
+            const int16_t mean = (int16_t)(part[i] * r->to_u[i] >> SHARE_BITS);
+            const int16_t sum = (int16_t)(all - part[i] + a[i] + b[i] + mean);
+            const int16_t rest = (int16_t)(sum * r->to_v[i] >> SHARE_BITS);
+            const int16_t stray = (int16_t)(mean - drift);
+            square[0][i] -= mean * mean;
+            square[1][i] += rest * rest;
+            square[2][i] += a[i] * a[i] + b[i] * b[i];
+            square[3][i] += a[i] * b[i];
+            square[4][i] += stray * stray;
         }
     }
-    for (int i = 0; i < LANES; i++) {
-        const int32_t spread = (r->square[i] >> 9) * r->to_u[i] >>
-                               (SHARE_BITS - 9);
-        const int32_t t0 = term(spread - mean_square[i], per);
-        const int32_t t1 = term(off[i], per), t2 = term(reach[i], per);
-        const int32_t t3 = term(angle[i], per), t4 = term(stray[i], drifts);
-        const int32_t sum = w0 * t0 + w1 * t1 + w2 * t2 + w3 * t3 + w4 * t4;
-        out[0][i] = (int16_t)t0;
-        out[1][i] = (int16_t)t1;
-        out[2][i] = (int16_t)t2;
-        out[3][i] = (int16_t)t3;
-        out[4][i] = (int16_t)t4;
-        cost[i] = ((sum >> 4) + (r->place[i] >> 4)) >> WEIGHT_BITS;
-    }
+    for (int i = 0; i < LANES; i++)
+        square[0][i] += (r->square[i] >> 9) * r->to_u[i] >> (SHARE_BITS - 9);
+    int32_t sum[LANES] = { 0 };
+    for (int t = 0; t < TERMS; t++)
+        add_term(square[t], t == TERMS - 1 ? drifts : per,
+                 (int16_t)(w[t] >> 4), out[t], sum);
+    for (int i = 0; i < LANES; i++)
+        cost[i] = ((sum[i] >> 4) + (r->place[i] >> 4)) >> WEIGHT_BITS;
 }
 
 /* Weighs a row whose first `live` lanes are options and appends it. */
@@ -245,7 +246,8 @@ static void append_inner(const shape *s, options *list, uint32_t first,
     row r;
     for (int k = 0; k < 3; k++)
         for (uint32_t i = 0; i < LANES; i++) {
-            r.part[k][i] = s->sum[k][end + 1 + i] - s->sum[k][first + i];
+            r.part[k][i] = (int16_t)(s->sum[k][end + 1 + i] -
+                                     s->sum[k][first + i]);
             r.a[k][i] = s->x[k][first + i];
             r.b[k][i] = s->x[k][end + i];
         }
@@ -274,7 +276,7 @@ static void append_outer(const shape *s, options *list, uint32_t first,
         const uint32_t x = first + i;
         const uint32_t from = side ? 0 : x, end = side ? x : n - 1;
         for (int k = 0; k < 3; k++) {
-            r.part[k][i] = s->sum[k][end + 1] - s->sum[k][from];
+            r.part[k][i] = (int16_t)(s->sum[k][end + 1] - s->sum[k][from]);
             (side ? r.b : r.a)[k][i] = s->x[k][x];
         }
         r.square[i] = s->square[end + 1] - s->square[from];
@@ -383,7 +385,10 @@ static void learn_option(shape *s, const options *list, uint32_t i,
 static void learn(shape *s, const options *list, uint32_t sum, uint32_t truth)
 {
     const uint64_t per_sum = ((uint64_t)SHARE_ONE << 28) / sum;
+    const uint64_t least = ((uint64_t)LEAST_ERROR << 28) / per_sum;
     for (uint32_t i = 0; i < list->count; i++) {
+        if (list->share[i] < least && i != truth)
+            continue; /* the error is too small */
         const int32_t error = (i == truth ? SHARE_ONE : 0) -
                               (int32_t)(list->share[i] * per_sum >> 28);
         if (error <= -LEAST_ERROR || error >= LEAST_ERROR)

@@ -4,8 +4,8 @@
 #include <string.h>
 
 enum {
-    FORGET = 7,    /* a sample counts 1/128 less with each that follows */
-    INTERVAL = 1,  /* samples between rounds */
+    FORGET = 7,   /* a sample counts 1/128 less with each that follows */
+    INTERVAL = 1, /* samples between rounds */
     LARGEST = 1 << 19
 };
 
@@ -31,8 +31,9 @@ static void improve(pmesh_fit *f, int64_t pull)
         rest += (pull >> 16) * (f->start[t] - f->weight[t]);
         const int64_t step = rest / (((row[t] + pull) >> 16) + 1);
         const int64_t w = f->weight[t] + step;
-        f->weight[t] =
-            (int32_t)(w > LARGEST ? LARGEST : w < -LARGEST ? -LARGEST : w);
+        f->weight[t] = (int32_t)(w > LARGEST    ? LARGEST
+                                 : w < -LARGEST ? -LARGEST
+                                                : w);
     }
 }
 
@@ -40,8 +41,7 @@ void pmesh_fit_learn(pmesh_fit *f, const pmesh_sample *s, int32_t weight,
                      int64_t pull)
 {
     for (int i = 0; i < PMESH_FIT_PAIRS; i++)
-        f->pair[i] +=
-            (int64_t)weight * s->pair[i] - (f->pair[i] >> FORGET);
+        f->pair[i] += (int64_t)weight * s->pair[i] - (f->pair[i] >> FORGET);
     for (int t = 0; t < PMESH_FIT_TERMS; t++)
         f->target[t] +=
             (int64_t)weight * s->target[t] - (f->target[t] >> FORGET);

@@ -68,8 +68,7 @@ static uint32_t flag_context(const pmesh_codec *c, const pmesh_ring *ring)
         seen[c->state[ring->vertex[i]]]++;
     const uint32_t size = ring->count + ring->open;
     const uint32_t valence = size < 4 ? 0 : at_most(size - 3, 7);
-    const uint32_t split =
-        at_most(seen[PMESH_PARENT] + seen[PMESH_NEWBORN], 5);
+    const uint32_t split = at_most(seen[PMESH_PARENT] + seen[PMESH_NEWBORN], 5);
     const uint32_t kept = at_most(seen[PMESH_KEPT], 4);
     const uint32_t unvisited = at_most(seen[PMESH_UNVISITED], 6);
     return ((valence * 6 + split) * 5 + kept) * 7 + unvisited;
@@ -271,8 +270,8 @@ static bool code_moved_parent(pmesh_codec *c, pmesh_coder *coder,
     const pmesh_ring *ring = gather(c, v, &space);
     pmesh_prediction p;
     for (int k = 0; k < 3; k++) /* parent and child part about evenly */
-        mirrored[k] = clamp(2 * (int64_t)before[k] - m->position[u][k],
-                            c->bounds[k]);
+        mirrored[k] =
+            clamp(2 * (int64_t)before[k] - m->position[u][k], c->bounds[k]);
     pmesh_predict(c, PMESH_PREDICT_MOVED_PARENT, v, ring, u, mirrored, u + 1,
                   &p);
     return code_position(c, coder, oracle, 1, v, ring, &p);

@@ -5,19 +5,26 @@
 enum { ALONG_START = 900, ACROSS_START = 400 };
 
 #define COUNT(array, item) (sizeof(array) / sizeof(item))
-#define INIT_BITS(array) \
+#define INIT_BITS(array)                                                       \
     pmesh_bits_init((pmesh_bit *)(array), COUNT(array, pmesh_bit))
+
+static void residual_bits_init(pmesh_residual_bits *b, const uint8_t *from)
+{
+    pmesh_bits_start(b->zero, PMESH_LEANS, from);
+    pmesh_bits_start(b->sign, PMESH_LEANS, from + PMESH_LEANS);
+    pmesh_bits_start(b->unary, PMESH_UNARY, from + 2 * PMESH_LEANS);
+}
 
 static void residual_init(pmesh_residual_model *m, const pmesh_tables *start)
 {
     for (int scale = 0; scale < PMESH_SCALES; scale++) {
         const uint8_t *from = start->residual + scale * PMESH_RESIDUAL_BITS;
-        pmesh_bits_start(m->any[scale].zero, PMESH_RESIDUAL_BITS, from);
-        for (int i = 0; i < 3 * PMESH_FAR; i++)
-            pmesh_bits_start(m->here[scale][0][i].zero, PMESH_RESIDUAL_BITS,
-                             from);
+        residual_bits_init(&m->any[scale], from);
+        for (int place = 0; place < 3; place++)
+            for (int far = 0; far < PMESH_FAR; far++)
+                residual_bits_init(&m->here[scale][place][far], from);
     }
-    pmesh_bits_start(m->low[0], COUNT(m->low, pmesh_bit), start->low);
+    pmesh_bits_start((pmesh_bit *)m->low, COUNT(m->low, pmesh_bit), start->low);
     pmesh_number_init(&m->escape);
 }
 
@@ -47,17 +54,19 @@ static void weights_init(int32_t *to, const int16_t *from, size_t count,
 
 static void cut_init(pmesh_cut_weights *w, const pmesh_tables *start)
 {
-    weights_init(w->shape[0][0], start->shape, COUNT(w->shape, int32_t), 4);
-    weights_init(w->degree[0], start->degree, COUNT(w->degree, int32_t), 256);
-    weights_init(w->state[0][0][0], start->state, COUNT(w->state, int32_t),
+    weights_init((int32_t *)w->shape, start->shape, COUNT(w->shape, int32_t),
+                 4);
+    weights_init((int32_t *)w->degree, start->degree, COUNT(w->degree, int32_t),
                  256);
-    weights_init(w->span[0][0], start->span, COUNT(w->span, int32_t), 256);
+    weights_init((int32_t *)w->state, start->state, COUNT(w->state, int32_t),
+                 256);
+    weights_init((int32_t *)w->span, start->span, COUNT(w->span, int32_t), 256);
 }
 
 static void predict_init(pmesh_models *m, const pmesh_tables *start)
 {
     const int16_t *from = start->predict;
-    pmesh_fit(*fit)[2] = m->predict[0][0];
+    pmesh_fit(*fit)[2] = (pmesh_fit(*)[2])m->predict;
     for (size_t i = 0; i < COUNT(m->predict, *fit); i++) {
         pmesh_fit_init(&fit[i][0], from, 2);
         pmesh_fit_init(&fit[i][1], from + 1, 2);
@@ -68,7 +77,8 @@ static void predict_init(pmesh_models *m, const pmesh_tables *start)
 void pmesh_models_init(pmesh_models *m, const pmesh_tables *start)
 {
     pmesh_bits_start(m->flag, PMESH_FLAG_CONTEXTS, start->flag);
-    pmesh_bits_start(m->cut[0][0], COUNT(m->cut, pmesh_bit), start->rank);
+    pmesh_bits_start((pmesh_bit *)m->cut, COUNT(m->cut, pmesh_bit),
+                     start->rank);
     cut_init(&m->cut_weights, start);
     predict_init(m, start);
     INIT_BITS(m->base);
@@ -82,8 +92,8 @@ void pmesh_models_init(pmesh_models *m, const pmesh_tables *start)
             pmesh_number_init(&m->value[i][k]);
     residual_init(&m->residual[0], start);
     residual_init(&m->residual[1], start);
-    means_init(m->along[0][0][0], start->along, COUNT(m->along, pmesh_mean),
-               ALONG_START);
-    means_init(m->across[0][0], start->across, COUNT(m->across, pmesh_mean),
-               ACROSS_START);
+    means_init((pmesh_mean *)m->along, start->along,
+               COUNT(m->along, pmesh_mean), ALONG_START);
+    means_init((pmesh_mean *)m->across, start->across,
+               COUNT(m->across, pmesh_mean), ACROSS_START);
 }

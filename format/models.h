@@ -18,7 +18,7 @@ typedef struct pmesh_residual_bits {
     pmesh_bit zero[PMESH_LEANS];
     pmesh_bit sign[PMESH_LEANS];
     pmesh_bit unary[PMESH_UNARY];
-} pmesh_residual_bits;
+} pmesh_residual_bits; /* in the order of pmesh_tables.residual */
 
 /* Of each bit there are two models: one for all coordinates, one for those at
  * this place (first, second, last) behind one that was as far off as this. */
@@ -60,7 +60,8 @@ typedef struct pmesh_models {
     pmesh_cut_weights cut_weights;
     /* Weights of the predictor's terms, along the surface and across it; they
      * start from the tables. */
-    pmesh_fit predict[PMESH_PREDICT_KINDS][PMESH_PREDICT_CLASSES][PMESH_UNKNOWN][2];
+    pmesh_fit predict[PMESH_PREDICT_KINDS][PMESH_PREDICT_CLASSES][PMESH_UNKNOWN]
+                     [2];
     pmesh_residual_model residual[2]; /* of a child, of a moved parent */
     pmesh_mean along[2][PMESH_PREDICT_CLASSES][PMESH_UNKNOWN][PMESH_IRREGULAR];
     pmesh_mean across[2][PMESH_ROUGH][PMESH_UNKNOWN];

@@ -44,10 +44,10 @@ static void bend(const pmesh_codec *c, const pmesh_star *s,
         for (int k = 0; k < 3; k++) {
             const int64_t all = (int64_t)(int32_t)c->around[y][k] - at[k] -
                                 (int64_t)others * base[k];
-            sum[k] += pmesh_share(limited(pmesh_scale(all, s->shift),
-                                          SUM_LIMIT),
-                                  others) -
-                      s->point[i][k];
+            sum[k] +=
+                pmesh_share(limited(pmesh_scale(all, s->shift), SUM_LIMIT),
+                            others) -
+                s->point[i][k];
         }
         used++;
     }
@@ -95,8 +95,7 @@ static void make_terms(const pmesh_codec *c, const pmesh_star *s,
     }
     for (int k = 0; k < 3; k++) {
         p->term[0][k] = -s->mean[k]; /* the partner is the base point */
-        p->term[1][k] =
-            ((s->point[a][k] + s->point[b][k]) >> 1) - s->mean[k];
+        p->term[1][k] = ((s->point[a][k] + s->point[b][k]) >> 1) - s->mean[k];
         p->term[2][k] =
             ((s->point[far][k] + s->point[far2][k]) >> 1) - s->mean[k];
     }
@@ -123,7 +122,8 @@ static void make_terms(const pmesh_codec *c, const pmesh_star *s,
 /* A ring beyond the bound: splits of its neighbours made it so large. */
 static void predict_blindly(const int32_t at[3], pmesh_prediction *out)
 {
-    *out = (pmesh_prediction){ .size = 64 << FRACTION_BITS, .ring_class = 7,
+    *out = (pmesh_prediction){ .size = 64 << FRACTION_BITS,
+                               .ring_class = 7,
                                .unknown = 2,
                                .irregular = PMESH_IRREGULAR - 1,
                                .rough = PMESH_ROUGH - 1 };
@@ -187,8 +187,9 @@ static void add_terms(pmesh_prediction *p, const int32_t bounds[3])
             p->mean[k] +
             ((sum[k] + (height * p->normal[k] >> PMESH_NORMAL_BITS)) >>
              WEIGHT_BITS);
-        const int64_t x = (int64_t)p->base[k] * (1 << FRACTION_BITS) +
-                          pmesh_scale(p->corrected[k], FRACTION_BITS - p->shift);
+        const int64_t x =
+            (int64_t)p->base[k] * (1 << FRACTION_BITS) +
+            pmesh_scale(p->corrected[k], FRACTION_BITS - p->shift);
         const int64_t limit = (int64_t)bounds[k] << FRACTION_BITS;
         p->position[k] = x < 0 ? 0 : x > limit ? limit : x;
     }
@@ -220,7 +221,7 @@ enum {
     WEIGHT_SCALE = 1 << 26
 };
 
-#define PULL_ALONG ((int64_t)1 << 24)
+#define PULL_ALONG  ((int64_t)1 << 24)
 #define PULL_ACROSS ((int64_t)1 << 27)
 
 static int32_t sample_weight(int64_t square)
@@ -232,9 +233,8 @@ static int32_t sample_weight(int64_t square)
 /* An expected error in the units of learning, squared. */
 static int64_t expected_square(const pmesh_prediction *p, uint32_t error)
 {
-    const int64_t e =
-        limited(pmesh_scale(error, p->shift - FRACTION_BITS - FIT_DROP),
-                TERM_LIMIT);
+    const int64_t e = limited(
+        pmesh_scale(error, p->shift - FRACTION_BITS - FIT_DROP), TERM_LIMIT);
     return e * e;
 }
 
@@ -245,15 +245,16 @@ static void split_terms(const pmesh_prediction *p,
     for (int t = 0; t < PMESH_FIT_TERMS; t++) {
         across[t] = (int32_t)(p->height[t] >> FIT_DROP);
         for (int k = 0; k < 3; k++)
-            along[t][k] = (int32_t)((p->term[t][k] -
-                                     (p->height[t] * p->normal[k] >>
-                                      PMESH_NORMAL_BITS)) >> FIT_DROP);
+            along[t][k] =
+                (int32_t)((p->term[t][k] - (p->height[t] * p->normal[k] >>
+                                            PMESH_NORMAL_BITS)) >>
+                          FIT_DROP);
     }
 }
 
 static void learn_along(const pmesh_prediction *p,
-                        int32_t f[PMESH_FIT_TERMS][3],
-                        const int32_t target[3], int32_t weight)
+                        int32_t f[PMESH_FIT_TERMS][3], const int32_t target[3],
+                        int32_t weight)
 {
     pmesh_sample s;
     int32_t *pair = s.pair;
@@ -302,9 +303,9 @@ void pmesh_predict_learn(const pmesh_prediction *p, const int32_t position[3],
     const int64_t square_flat =
         limited((error >> 2 * FIT_DROP) - square_up, INT32_MAX);
     for (int k = 0; k < 3; k++)
-        target[k] = (int32_t)((wanted[k] -
-                               (up * p->normal[k] >> PMESH_NORMAL_BITS)) >>
-                              FIT_DROP);
+        target[k] =
+            (int32_t)((wanted[k] - (up * p->normal[k] >> PMESH_NORMAL_BITS)) >>
+                      FIT_DROP);
     split_terms(p, f, h);
     learn_along(p, f, target,
                 sample_weight(expected_square(p, along) +

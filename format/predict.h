@@ -27,8 +27,8 @@ typedef struct pmesh_prediction {
     uint32_t size;       /* mean radius of the ring, 1/16 steps, at least 16 */
     uint8_t ring_class;  /* < PMESH_PREDICT_CLASSES */
     uint8_t unknown;     /* provisional members: 0, 1, 2 for more */
-    uint8_t irregular;   /* neighbours with other than 6 neighbours, at most 4 */
-    uint8_t rough;       /* how far the ring is from plane, log classes */
+    uint8_t irregular; /* neighbours with other than 6 neighbours, at most 4 */
+    uint8_t rough;     /* how far the ring is from plane, log classes */
 
     /* What learning needs; in the coordinates of the star (star.h). */
     pmesh_fit *fit; /* along, across; NULL if the ring was too large */

@@ -6,8 +6,8 @@
 enum {
     FRACTION_BITS = 4,
     FRACTION = 16,
-    ONE = 16384,       /* of normals and of variances relative to `along` */
-    MEAN_ONE = 4096,   /* of pmesh_mean */
+    ONE = 16384,     /* of normals and of variances relative to `along` */
+    MEAN_ONE = 4096, /* of pmesh_mean */
     MEAN_USES = 60,
     LEAST_RATIO = 128, /* across is taken as along / 128 at least */
     LOW_MODELS = 3
@@ -42,8 +42,8 @@ static uint64_t code_size(pmesh_coder *coder, pmesh_residual_model *m,
            pmesh_code_bit_twice(coder, &any[q], &here[q], bin > q))
         q++;
     if (q == PMESH_UNARY)
-        q += pmesh_code_number(coder, &m->escape,
-                               (uint32_t)(bin - PMESH_UNARY));
+        q +=
+            pmesh_code_number(coder, &m->escape, (uint32_t)(bin - PMESH_UNARY));
     uint64_t result = q;
     for (unsigned i = shift; i-- > 0;) {
         const unsigned bit = size >> i & 1;
@@ -73,10 +73,10 @@ static int64_t code_coordinate(pmesh_coder *coder, pmesh_residual_model *m,
     if (!pmesh_code_bit_twice(coder, &any->zero[lean], &here->zero[lean],
                               r != 0))
         return center;
-    const unsigned negative = pmesh_code_bit_twice(
-        coder, &any->sign[lean], &here->sign[lean], r < 0);
-    const int64_t size = 1 + (int64_t)code_size(coder, m, at,
-                                                (uint64_t)(r < 0 ? -r : r) - 1);
+    const unsigned negative =
+        pmesh_code_bit_twice(coder, &any->sign[lean], &here->sign[lean], r < 0);
+    const int64_t size =
+        1 + (int64_t)code_size(coder, m, at, (uint64_t)(r < 0 ? -r : r) - 1);
     return negative ? center - size : center + size;
 }
 
@@ -99,8 +99,8 @@ static void learn(pmesh_mean *m, uint64_t seen, uint32_t size)
     uint64_t ratio = seen * MEAN_ONE / size;
     if (ratio > 64 * MEAN_ONE)
         ratio = 64 * MEAN_ONE;
-    const int64_t step = ((int64_t)ratio - (int64_t)m->value) * 2 /
-                         (2 * (int64_t)m->uses + 5);
+    const int64_t step =
+        ((int64_t)ratio - (int64_t)m->value) * 2 / (2 * (int64_t)m->uses + 5);
     m->value = (uint32_t)((int64_t)m->value + step);
     if (m->uses < MEAN_USES)
         m->uses++;
@@ -175,8 +175,8 @@ static int64_t gauss_given(const gauss *g, int k, const int64_t d[3],
     if (k == 1) {
         const int64_t both = -(g->rho * n[0] / ONE * n[1] / ONE);
         mean = both * d[0] / variance;
-        const int64_t given = ONE - g->rho * n[1] / ONE * n[1] / ONE -
-                              both * both / variance;
+        const int64_t given =
+            ONE - g->rho * n[1] / ONE * n[1] / ONE - both * both / variance;
         variance = given < least ? least : given;
     }
     *scale = scale_of(along * (uint64_t)variance / ONE);
@@ -184,8 +184,8 @@ static int64_t gauss_given(const gauss *g, int k, const int64_t d[3],
 }
 
 /* Learns from the outcome: d by coordinates, in coding order. */
-static void learn_errors(const gauss *g, const int64_t d[3],
-                         pmesh_mean *along, pmesh_mean *across, uint32_t size)
+static void learn_errors(const gauss *g, const int64_t d[3], pmesh_mean *along,
+                         pmesh_mean *across, uint32_t size)
 {
     int64_t height = 0, flat[3];
     for (int k = 0; k < 3; k++)

@@ -2,11 +2,11 @@
 #include "format/star.h"
 
 /* 2^32 / n, rounded up or 1 more. */
-#define R(n) ((int64_t)(((uint64_t)1 << 32) / (n)) + 1)
+#define R(n)  ((int64_t)(((uint64_t)1 << 32) / (n)) + 1)
 #define R4(n) R(n), R((n) + 1), R((n) + 2), R((n) + 3)
 
 static const int64_t reciprocal[PMESH_MAX_RING + 1] = {
-    0,     R4(1),  R4(5),  R4(9),  R4(13), R4(17), R4(21),
+    0,      R4(1),  R4(5),  R4(9),  R4(13), R4(17), R4(21),
     R4(25), R4(29), R4(33), R4(37), R4(41), R4(45),
 };
 
@@ -27,20 +27,20 @@ unsigned pmesh_bit_length(uint64_t value)
 #endif
 }
 
+/* Newton's method from above: falls until it would not any more. The first
+ * guess is (c + value / c) / 2, never below the root, with c = 3/4 of the power
+ * of two above the root; rounding is made up for by 2. */
 uint32_t pmesh_isqrt(uint64_t value)
 {
-    uint64_t root = 0, bit = (uint64_t)1 << 62;
-    if (value)
-        bit >>= (64 - pmesh_bit_length(value)) & ~1u;
-    for (; bit; bit >>= 2) {
-        if (value >= root + bit) {
-            value -= root + bit;
-            root = (root >> 1) + bit;
-        } else {
-            root >>= 1;
-        }
+    const unsigned half = (pmesh_bit_length(value) + 1) / 2;
+    uint64_t root = (((uint64_t)3 << half) >> 3) + (value >> half) * 2 / 3 + 2;
+    while (value) {
+        const uint64_t next = (root + value / root) / 2;
+        if (next >= root)
+            return (uint32_t)root;
+        root = next;
     }
-    return (uint32_t)root;
+    return 0;
 }
 
 static int64_t size_of(int64_t value)
@@ -101,8 +101,8 @@ static void find_normal(pmesh_star *s)
         for (int k = 0; k < 3; k++)
             sum[k] += f[k];
     }
-    const uint64_t all = (uint64_t)size_of(sum[0]) |
-                         (uint64_t)size_of(sum[1]) | (uint64_t)size_of(sum[2]);
+    const uint64_t all = (uint64_t)size_of(sum[0]) | (uint64_t)size_of(sum[1]) |
+                         (uint64_t)size_of(sum[2]);
     const unsigned bits = pmesh_bit_length(all);
     const unsigned drop = bits > 24 ? bits - 24 : 0;
     uint64_t square = 0;
@@ -111,8 +111,7 @@ static void find_normal(pmesh_star *s)
         square += (uint64_t)(sum[k] * sum[k]);
     }
     const uint32_t length = pmesh_isqrt(square);
-    const int64_t per =
-        length ? ((int64_t)1 << 38) / length : 0;
+    const int64_t per = length ? ((int64_t)1 << 38) / length : 0;
     for (int k = 0; k < 3; k++)
         s->normal[k] = sum[k] * per >> (38 - PMESH_NORMAL_BITS);
 }
@@ -143,8 +142,7 @@ static void centre(const int64_t sum[3], int64_t weight, int64_t out[3])
         out[k] = sum[k] * per >> 38;
 }
 
-void pmesh_star_centres(const pmesh_star *s, int64_t area[3],
-                        int64_t spokes[3])
+void pmesh_star_centres(const pmesh_star *s, int64_t area[3], int64_t spokes[3])
 {
     int64_t length[PMESH_MAX_RING], all = 0;
     int64_t by_area[3] = { 0, 0, 0 }, by_spoke[3] = { 0, 0, 0 };

@@ -106,10 +106,9 @@ static void set_bits(uint8_t *to, const sums *s, size_t count)
 {
     enum { LEAST_USES = 8 };
     for (size_t i = 0; i < count; i++) {
-        const double p =
-            s[i].weight < LEAST_USES
-                ? 0
-                : 256 / (1 + exp(-s[i].value / s[i].weight)) - 0.5;
+        const double p = s[i].weight < LEAST_USES
+                             ? 0
+                             : 256 / (1 + exp(-s[i].value / s[i].weight)) - 0.5;
         to[i] = (uint8_t)(p > 0 ? rounded(p, 1, 255) : 0);
     }
 }
@@ -149,7 +148,8 @@ static void set_tables(pmesh_tables *to, const totals *t)
     set_means(to->across, t->across, COUNT(to->across));
 }
 
-/* ---- coding --------------------------------------------------------------- */
+/* ---- coding ---------------------------------------------------------------
+ */
 
 static pmesh_status code(enc_replay *r, const pmesh_encoder_config *config,
                          const enc_schedule *schedule, uint8_t *room)
@@ -162,9 +162,9 @@ static pmesh_status code(enc_replay *r, const pmesh_encoder_config *config,
             pmesh_coder coder;
             out.size = 0;
             pmesh_coder_encode(&coder, &out);
-            status = enc_replay_block(r, &coder, r->splits_left < BLOCK_SPLITS
-                                                     ? r->splits_left
-                                                     : BLOCK_SPLITS);
+            status = enc_replay_block(
+                r, &coder,
+                r->splits_left < BLOCK_SPLITS ? r->splits_left : BLOCK_SPLITS);
         }
     }
     return status;
@@ -181,7 +181,7 @@ static pmesh_status run(const pmesh_mesh_input *in,
     pmesh_status status = enc_mesh_import(in, config, &mesh, &report);
     if (status != PMESH_OK)
         return status;
-    status = enc_schedule_build(&mesh, config, &schedule);
+    status = enc_schedule_build(&mesh, config, 0, &schedule);
     if (status != PMESH_OK)
         return status;
     status = enc_replay_create(&replay, &mesh, &schedule,
@@ -224,7 +224,8 @@ static void train_on(const char *path, const pmesh_tables *start, totals *sum,
     asset_free(&a);
 }
 
-/* ---- printing -------------------------------------------------------------- */
+/* ---- printing --------------------------------------------------------------
+ */
 
 static void print_numbers(const char *name, const void *numbers, size_t count,
                           int kind)
@@ -244,7 +245,7 @@ static void print_numbers(const char *name, const void *numbers, size_t count,
     printf("\n    },\n");
 }
 
-#define PRINT(field, kind) \
+#define PRINT(field, kind)                                                     \
     print_numbers(#field, t->field, COUNT(t->field), kind)
 
 static void print_tables(const pmesh_tables *t)

@@ -177,7 +177,7 @@ static trial trial_of(soup *s, look how)
 static void run(trial *t)
 {
     CHECK(import(t) == PMESH_OK);
-    CHECK(enc_schedule_build(&t->mesh, &t->config, &t->schedule) == PMESH_OK);
+    CHECK(enc_schedule_build(&t->mesh, &t->config, 0, &t->schedule) == PMESH_OK);
 }
 
 static void finish(trial *t)
@@ -659,7 +659,7 @@ TEST(schedule_survives_every_failure_of_memory)
     for (size_t n = 0; n < 100 && status != PMESH_OK; n++) {
         b.calls = 0;
         b.allowed = n;
-        status = enc_schedule_build(&t.mesh, &t.config, &t.schedule);
+        status = enc_schedule_build(&t.mesh, &t.config, 0, &t.schedule);
         CHECK(status == PMESH_OK ||
               (status == PMESH_E_MEMORY && b.blocks == blocks));
     }
@@ -681,7 +681,7 @@ TEST(schedule_can_be_cancelled)
 
     t.config.progress = cancel_at_once;
     CHECK(import(&t) == PMESH_OK);
-    CHECK(enc_schedule_build(&t.mesh, &t.config, &t.schedule) ==
+    CHECK(enc_schedule_build(&t.mesh, &t.config, 0, &t.schedule) ==
           PMESH_E_CANCELLED);
     CHECK(t.schedule.contraction == NULL);
     finish(&t);
