@@ -44,8 +44,8 @@ static void make_shape(random_mesh *m)
         { SHAPE_SPHERE, 3, 6 },    { SHAPE_TERRAIN, 2, 11 },
         { SHAPE_TORUS, 4, 9 },     { SHAPE_FACETS, 4, 5 },
         { SHAPE_SOUP, 5, 40 },     { SHAPE_PIECES, 1, 30 },
-        { GOLDEN_TRIANGLE, 3, 1 }, { GOLDEN_FAN, 3, 12 },
-        { GOLDEN_SPINDLE, 3, 12 }, { GOLDEN_FAN, 40, 16 },
+        { GOLDEN_TRIANGLE, 3, 1 }, { GOLDEN_FAN, 5, 12 },
+        { GOLDEN_SPINDLE, 5, 12 }, { GOLDEN_FAN, 40, 16 },
         { GOLDEN_SPINDLE, 40, 16 }, { GOLDEN_SPIKES, 4, 9 }
     };
     const size_t count = sizeof kinds / sizeof *kinds;
