@@ -39,9 +39,19 @@ typedef struct ref_number {
     ref_model length[32], top[32][3];
 } ref_number;
 
+/* Makes a stream instead of reading one: what is read is what choose() says. */
+typedef struct ref_author {
+    int (*choose)(void *user, const ref_model *m); /* m: NULL for raw bits */
+    void *user;
+    uint8_t *data;
+    size_t size, room;
+    uint64_t low;
+} ref_author;
+
 typedef struct ref_coder {
     const uint8_t *next, *end;
     uint32_t range, code;
+    ref_author *author; /* NULL: none */
 } ref_coder;
 
 /* Entry 0 of a table, or none, is a fresh model. */
@@ -53,7 +63,8 @@ int ref_bit(ref_coder *c, ref_model *m);
 int ref_bit2(ref_coder *c, ref_model *m, ref_model *n);
 uint64_t ref_raw(ref_coder *c, int bits);
 uint64_t ref_read_number(ref_coder *c, ref_number *n);
-uint64_t ref_uniform(ref_coder *c, uint64_t n);
+uint64_t ref_uniform(ref_coder *c, uint64_t n); /* no author can */
+void ref_author_end(ref_author *a);             /* the last bytes */
 
 /* ---- integers (2) ------------------------------------------------------- */
 

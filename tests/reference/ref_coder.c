@@ -2,6 +2,8 @@
 /* SPEC 2 and 6.1: integers, models, the range coder. */
 #include "tests/reference/ref.h"
 
+#include <stdlib.h>
+
 /* ---- integers ----------------------------------------------------------- */
 
 int ref_bits(uint64_t x)
@@ -145,48 +147,80 @@ static uint32_t next_byte(ref_coder *c)
     return 0;
 }
 
+/* The bytes of low leave it from the top; what carries over is added to those
+ * that left. */
+static void write_byte(ref_author *a)
+{
+    if (a->low >> 32)
+        for (size_t i = a->size; i-- > 0 && ++a->data[i] == 0;)
+            ;
+    if (a->size == a->room) {
+        a->room = 2 * a->room + 64;
+        a->data = realloc(a->data, a->room);
+    }
+    a->data[a->size++] = (uint8_t)(a->low >> 24);
+    a->low = (a->low & 0xffffff) << 8;
+}
+
+void ref_author_end(ref_author *a)
+{
+    for (int i = 0; i < 4; i++)
+        write_byte(a);
+}
+
 static void normalise(ref_coder *c)
 {
     while (c->range < 1u << 24) {
         c->range *= 256;
-        c->code = c->code * 256 + next_byte(c);
+        if (c->author)
+            write_byte(c->author);
+        else
+            c->code = c->code * 256 + next_byte(c);
     }
 }
 
 void ref_coder_start(ref_coder *c, const uint8_t *data, const uint8_t *end)
 {
-    *c = (ref_coder){ data, end, UINT32_MAX, 0 };
-    for (int i = 0; i < 4; i++)
+    *c = (ref_coder){ data, end, UINT32_MAX, 0, c->author };
+    for (int i = 0; i < 4 && !c->author; i++)
         c->code = c->code * 256 + next_byte(c);
 }
 
-static int decide(ref_coder *c, int32_t p)
+/* Is code in the upper part, from `bound` on? Goes on with that part. */
+static int above(ref_coder *c, uint32_t bound, const ref_model *m)
+{
+    const int bit = c->author ? c->author->choose(c->author->user, m)
+                              : c->code >= bound;
+    if (bit && c->author)
+        c->author->low += bound;
+    else if (bit)
+        c->code -= bound;
+    return bit;
+}
+
+static int decide(ref_coder *c, int32_t p, const ref_model *m)
 {
     if (p < 32 || p > 65504)
         REF_SEEN(p_limited);
     const uint32_t bound =
         c->range / 65536 * (uint32_t)ref_clamp(p, 32, 65504);
-    const int bit = c->code >= bound;
-    if (bit) {
-        c->code -= bound;
-        c->range -= bound;
-    } else {
-        c->range = bound;
-    }
+    const int bit = above(c, bound, m);
+    c->range = bit ? c->range - bound : bound;
     normalise(c);
     return bit;
 }
 
 int ref_bit(ref_coder *c, ref_model *m)
 {
-    const int bit = decide(c, (m->fast + m->slow) / 2);
+    const int bit = decide(c, (m->fast + m->slow) / 2, m);
     learn(m, bit);
     return bit;
 }
 
 int ref_bit2(ref_coder *c, ref_model *m, ref_model *n)
 {
-    const int bit = decide(c, (m->fast + m->slow + n->fast + n->slow) / 4);
+    const int bit =
+        decide(c, (m->fast + m->slow + n->fast + n->slow) / 4, m);
     learn(m, bit);
     learn(n, bit);
     return bit;
@@ -197,9 +231,7 @@ uint64_t ref_raw(ref_coder *c, int bits)
     uint64_t value = 0;
     for (int i = 0; i < bits; i++) {
         c->range /= 2;
-        const int bit = c->code >= c->range;
-        if (bit)
-            c->code -= c->range;
+        const int bit = above(c, c->range, NULL);
         normalise(c);
         value = 2 * value + (uint64_t)bit;
     }
