@@ -60,7 +60,7 @@ $(B)/golden_bake: $(call obj,tests/golden/golden_bake.c \
 $(B)/golden_decode: $(B)/tests/golden/golden_decode.o $(B)/libpmesh-dec.a
 $(B)/reference: $(B)/tests/reference/reference.o $(reference_obj)
 $(B)/reference_agree: $(call obj,$(addprefix tests/reference/,agree.c \
-  compare.c mutate.c random_mesh.c) tests/golden/golden_mesh.c \
+  author.c chunks.c compare.c mutate.c random_mesh.c) tests/golden/golden_mesh.c \
   tests/unit/shapes.c tools/trig.c) $(reference_obj) $(B)/libpmesh.a
 $(libs) $(B)/pmesh $(B)/unit $(B)/train: $(B)/objects.list
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * agree FILES MENDED DAMAGED GOLDEN... - compares the decoder of this directory
- * with the library's: on the golden files, on as many random FILES, and on
- * MENDED and DAMAGED mutations of both (with and without good checksums).
+ * with the library's: on the golden files, on as many random FILES and half as
+ * many that no encoder makes, and on MENDED and DAMAGED mutations (with and
+ * without good checksums).
  * Prints what was met, and each difference with the seed that makes it.
  */
 #include <inttypes.h>
@@ -10,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "tests/reference/author.h"
 #include "tests/reference/compare.h"
 #include "tests/reference/mutate.h"
 #include "tests/reference/random_mesh.h"
@@ -104,6 +106,35 @@ static void compare_random(tally *t, tally *prefixes, uint32_t files)
     }
 }
 
+/* Half as many as there are random files. */
+static void compare_authored(tally *t, uint32_t files)
+{
+    for (uint32_t seed = 1; t->files < files; seed++) {
+        shape_bytes file;
+        if (author_random_file(seed, &file)) {
+            const comparison c = compare_decoders(file.data, file.size, seed);
+            note(t, "authored", seed, file.size, &c);
+        }
+        free(file.data);
+    }
+}
+
+/* Every cut of a ring as large as one may be, or some. */
+static void compare_wide(tally *t, uint32_t ring, bool textured,
+                         uint32_t step)
+{
+    for (uint32_t rank = 0; rank < ring * (ring - 1); rank += step) {
+        shape_bytes file;
+        comparison c = { .difference = "there is no such cut" };
+        if (author_wide_split(ring, textured, rank, &file) > 0)
+            c = compare_decoders(file.data, file.size, rank);
+        if (!c.difference && !c.accepted)
+            c.difference = "rejected";
+        note(t, textured ? "wide, textured" : "wide", rank, file.size, &c);
+        free(file.data);
+    }
+}
+
 static void compare_mutations(tally *t, uint32_t files, bool mend,
                               char **golden, int count)
 {
@@ -121,16 +152,19 @@ static void compare_mutations(tally *t, uint32_t files, bool mend,
 
 int main(int argc, char **argv)
 {
-    tally golden = { 0 }, random = { 0 }, prefixes = { 0 }, mended = { 0 },
-          damaged = { 0 };
+    tally golden = { 0 }, random = { 0 }, prefixes = { 0 }, authored = { 0 },
+          wide = { 0 }, mended = { 0 }, damaged = { 0 };
     if (argc < 4) {
         fprintf(stderr, "usage: agree FILES MENDED DAMAGED GOLDEN...\n");
         return 2;
     }
     compare_golden(&golden, argv + 4, argc - 4);
-    compare_random(&random, &prefixes,
-                   (uint32_t)strtoul(argv[1], NULL, 10));
-    ref_seen_print(random.files >= 10000);
+    const uint32_t files = (uint32_t)strtoul(argv[1], NULL, 10);
+    compare_random(&random, &prefixes, files);
+    compare_wide(&wide, 48, false, files < 10000 ? 45 : 1);
+    compare_wide(&wide, 48, true, files < 10000 ? 45 : 1);
+    ref_seen_print(files >= 10000);
+    compare_authored(&authored, files / 2);
     compare_mutations(&mended, (uint32_t)strtoul(argv[2], NULL, 10), true,
                       argv + 4, argc - 4);
     compare_mutations(&damaged, (uint32_t)strtoul(argv[3], NULL, 10), false,
@@ -138,9 +172,12 @@ int main(int argc, char **argv)
     print_tally("golden", &golden);
     print_tally("random", &random);
     print_tally("prefixes", &prefixes);
+    print_tally("cuts of 48", &wide);
+    print_tally("authored", &authored);
     print_tally("mutations, mended", &mended);
     print_tally("mutations, damaged", &damaged);
     return golden.different + random.different + prefixes.different +
-               mended.different + damaged.different >
+               wide.different + authored.different + mended.different +
+               damaged.different >
            0;
 }
