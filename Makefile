@@ -41,6 +41,9 @@ tool_obj := $(call obj,$(wildcard tools/*.c tools/*.cpp))
 shared_obj := $(filter-out $(B)/tools/pmesh.o,$(tool_obj))
 unit_obj := $(call obj,$(units)) $(shared_obj)
 golden := $(B)/golden_bake $(B)/golden_decode
+reference := $(B)/reference $(B)/reference_agree
+reference_obj := $(call obj,$(wildcard tests/reference/ref_*.c)) \
+  $(B)/reference_tables.o
 libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
 
 ## all: libraries and program (default)
@@ -55,6 +58,10 @@ $(B)/train: $(B)/tests/train/train.o $(shared_obj) $(B)/libpmesh.a
 $(B)/golden_bake: $(call obj,tests/golden/golden_bake.c \
   tests/golden/golden_mesh.c tests/unit/shapes.c tools/trig.c) $(B)/libpmesh.a
 $(B)/golden_decode: $(B)/tests/golden/golden_decode.o $(B)/libpmesh-dec.a
+$(B)/reference: $(B)/tests/reference/reference.o $(reference_obj)
+$(B)/reference_agree: $(call obj,$(addprefix tests/reference/,agree.c \
+  author.c chunks.c compare.c mutate.c random_mesh.c) tests/golden/golden_mesh.c \
+  tests/unit/shapes.c tools/trig.c) $(reference_obj) $(B)/libpmesh.a
 $(libs) $(B)/pmesh $(B)/unit $(B)/train: $(B)/objects.list
 
 inputs = $(filter %.o %.a,$^)
@@ -66,7 +73,7 @@ $(B)/%.so:
 $(B)/pmesh $(B)/unit $(B)/train:
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
 
-$(golden):
+$(golden) $(reference):
 	$(quiet)$(CC) $(inputs) $(link_flags) -lm -o $@
 
 $(B)/%.o: %.c $(B)/c.flags
@@ -77,6 +84,13 @@ $(B)/%.o: %.cpp $(B)/cxx.flags | $(B)/found
 	@mkdir -p $(@D)
 	$(quiet)$(CXX) $(cxx_flags) $(if $(filter tests/%,$<),$(cgal)) \
 	  -MMD -MP -c $< -o $@
+
+# The reference decoder's tables come from the text, not from the code.
+$(B)/reference_tables.c: SPEC.md tests/reference/tables.awk
+	@mkdir -p $(@D)
+	$(quiet)awk -f tests/reference/tables.awk SPEC.md >$@.new && mv $@.new $@
+$(B)/reference_tables.o: $(B)/reference_tables.c $(B)/c.flags
+	$(quiet)$(CC) $(c_flags) -MMD -MP -c $< -o $@
 
 # One line on what is missing, instead of a compiler's pages.
 $(B)/found:
@@ -107,7 +121,7 @@ test: deps
 
 ## check: the same without installing anything
 check:
-	+@$(submake) all $(B)/unit $(golden)
+	+@$(submake) all $(B)/unit $(golden) $(reference)
 	@tests/run.sh $(B)
 
 ## unit: only the unit tests; T=name selects some
@@ -133,6 +147,12 @@ check-symbols: $(libs)
 ## check-cross: the same results on other compilers and machines (tests/cross)
 check-cross: cross-deps
 	@tests/cross/all.sh build/cross
+
+## check-reference: 10,000 files against a decoder made from SPEC.md alone
+check-reference:
+	+@$(submake) $(B)/pmesh $(reference)
+	@PMESH=$(B)/pmesh FILES=10000 MENDED=2000 DAMAGED=500 \
+	  tests/reference/run.sh
 
 ## golden: write tests/golden anew; only for another version of the format
 golden: $(golden)
@@ -204,6 +224,6 @@ help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: all demo test check unit check-deps check-headers check-symbols bench
-.PHONY: check-cross golden deps bench-deps cross-deps install uninstall clean
-.PHONY: help FORCE
+.PHONY: check-cross check-reference golden deps bench-deps cross-deps install
+.PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

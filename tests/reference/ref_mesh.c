@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT */
+/* SPEC 3: half-edges, turns, rings; and what makes a mesh grow. */
+#include "tests/reference/ref.h"
+
+uint32_t ref_next(uint32_t h)
+{
+    return h % 3 == 2 ? h - 2 : h + 1;
+}
+
+uint32_t ref_prev(uint32_t h)
+{
+    return h % 3 == 0 ? h + 2 : h - 1;
+}
+
+uint32_t ref_left(const ref *r, uint32_t h)
+{
+    return r->edge[ref_prev(h)].twin;
+}
+
+uint32_t ref_start_of(const ref *r, uint32_t h)
+{
+    return r->edge[h].vertex;
+}
+
+uint32_t ref_end_of(const ref *r, uint32_t h)
+{
+    return r->edge[ref_next(h)].vertex;
+}
+
+/* Stops behind the first member too many. */
+ref_ring ref_ring_of(const ref *r, uint32_t v)
+{
+    ref_ring ring = { 0 };
+    const uint32_t first = r->vertex[v].first;
+    uint32_t h = first;
+    do {
+        ring.edge[ring.faces++] = h;
+        ring.vertex[ring.count++] = ref_end_of(r, h);
+        const uint32_t left = ref_left(r, h);
+        if (left == REF_NONE) {
+            ring.open = true;
+            ring.vertex[ring.count++] = ref_start_of(r, ref_prev(h));
+            break;
+        }
+        h = left;
+    } while (h != first && ring.count <= REF_MEMBERS);
+    ring.large = ring.count + ring.open > REF_MEMBERS;
+    return ring;
+}
+
+uint32_t ref_degree(const ref *r, uint32_t v)
+{
+    const uint32_t first = r->vertex[v].first;
+    uint32_t n = 0, h = first;
+    do {
+        n++;
+        h = ref_left(r, h);
+    } while (h != REF_NONE && h != first);
+    return h == REF_NONE ? n + 1 : n;
+}
+
+uint32_t ref_new_vertex(ref *r)
+{
+    const size_t count = r->vertex_count + (size_t)1;
+    r->vertex =
+        ref_grow(r, r->vertex, &r->vertex_room, count, sizeof *r->vertex);
+    r->vertex[r->vertex_count] =
+        (ref_vertex){ .first = REF_NONE, .parent = REF_NONE };
+    return r->vertex_count++;
+}
+
+uint32_t ref_new_face(ref *r, uint32_t a, uint32_t b, uint32_t c)
+{
+    const size_t count = r->face_count + (size_t)1;
+    size_t room = r->face_room;
+    r->material = ref_grow(r, r->material, &room, count, sizeof *r->material);
+    r->edge = ref_grow(r, r->edge, &r->face_room, count, 3 * sizeof *r->edge);
+    ref_edge *e = &r->edge[3 * (size_t)r->face_count];
+    e[0] = (ref_edge){ a, REF_NONE, REF_NONE };
+    e[1] = (ref_edge){ b, REF_NONE, REF_NONE };
+    e[2] = (ref_edge){ c, REF_NONE, REF_NONE };
+    r->material[r->face_count] = 0;
+    return r->face_count++;
+}
+
+uint32_t ref_new_wedge(ref *r, uint32_t corner)
+{
+    const size_t count = r->wedge_count + (size_t)1;
+    r->wedge = ref_grow(r, r->wedge, &r->wedge_room, count, sizeof *r->wedge);
+    r->wedge[r->wedge_count] = (ref_wedge){
+        .from = REF_NONE, .corner = corner, .vertex = r->edge[corner].vertex
+    };
+    r->edge[corner].wedge = r->wedge_count;
+    return r->wedge_count++;
+}
+
+void ref_join(ref *r, uint32_t g, uint32_t h)
+{
+    if (g != REF_NONE)
+        r->edge[g].twin = h;
+    if (h != REF_NONE)
+        r->edge[h].twin = g;
+}

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: MIT */
+/* SPEC 6.5: how far a position is from its prediction. */
+#include "tests/reference/ref.h"
+
+typedef struct axis_state {
+    int axis[3]; /* in coding order */
+    int64_t n[3], d[3];
+    int64_t s, c, rho, kappa;
+    int64_t V, B; /* of axis 1 */
+} axis_state;
+
+static int64_t absolute(int64_t a)
+{
+    return a < 0 ? -a : a;
+}
+
+static int64_t at_least(int64_t a, int64_t low)
+{
+    return a > low ? a : low;
+}
+
+static ref_expected *along_of(ref_residual_models *m, const ref_prediction *p)
+{
+    return &m->along[p->class][p->unknown][p->irregular];
+}
+
+static ref_expected *across_of(ref_residual_models *m,
+                               const ref_prediction *p)
+{
+    return &m->across[p->rough][p->unknown];
+}
+
+static int64_t expected(const ref_expected *e, int64_t size)
+{
+    return ref_clamp(e->value * size / 4096, 1, 1 << 24);
+}
+
+static void order_axes(axis_state *a, ref_vec normal)
+{
+    int last = 0, k = 0;
+    for (int i = 1; i < 3; i++)
+        if (absolute(normal.c[i]) >= absolute(normal.c[last]))
+            last = i;
+    for (int i = 0; i < 3; i++)
+        if (i != last)
+            a->axis[k++] = i;
+    a->axis[2] = last;
+    for (k = 0; k < 3; k++)
+        a->n[k] = normal.c[a->axis[k]];
+}
+
+static void set_ellipsoid(axis_state *a, const ref_prediction *p)
+{
+    a->s = p->along;
+    a->c = p->across < 4 * a->s ? p->across : 4 * a->s;
+    const int64_t q = at_least(a->c * 16384 / a->s, 128);
+    a->rho = 16384 - q * q / 16384;
+    a->kappa = (int64_t)16384 * 16384 / q * 16384 / q - 16384;
+    if (a->n[2] == 0)
+        a->rho = a->kappa = 0;
+}
+
+/* Mean, less the position, and square of axis k, given those before. */
+static void expect(axis_state *a, int k, int64_t *mean, int64_t *square)
+{
+    const int64_t *n = a->n, *d = a->d;
+    if (k == 0) {
+        a->V = at_least(
+            16384 - a->rho * n[0] / 16384 * n[0] / 16384, 4);
+        *mean = 0;
+        *square = a->s * a->s * a->V / 16384;
+    } else if (k == 1) {
+        const int64_t B = -(a->rho * n[0] / 16384 * n[1] / 16384);
+        const int64_t U = at_least(16384 -
+                                       a->rho * n[1] / 16384 * n[1] / 16384 -
+                                       B * B / a->V,
+                                   4);
+        *mean = B * d[0] / a->V;
+        *square = a->s * a->s * U / 16384;
+    } else {
+        const int64_t t = (n[0] * d[0] + n[1] * d[1]) / 16384;
+        const int64_t P = 16384 + a->kappa * n[2] / 16384 * n[2] / 16384;
+        *mean = -(a->kappa * n[2] / 16384 * t) / P;
+        *square = a->s * a->s * 16384 / P;
+    }
+}
+
+static int64_t read_size(ref *r, ref_residual_models *m, int scale, int k,
+                         int far)
+{
+    ref_cell *any = &m->any[scale], *here = &m->here[scale][k][far];
+    const int shift = scale > 11 ? scale / 2 - 5 : 0;
+    uint64_t size = 0;
+    while (size < 14 &&
+           ref_bit2(&r->in, &any->unary[size], &here->unary[size]))
+        size++;
+    if (size == 14) {
+        REF_SEEN(residual_escape);
+        size += ref_read_number(&r->in, &m->escape);
+    }
+    for (int i = 0, node = 0; i < shift; i++) {
+        int b;
+        if (i < 2) {
+            REF_SEEN(residual_low);
+            b = ref_bit(&r->in, &m->low[scale][node]);
+            node = 1 + b;
+        } else {
+            REF_SEEN(residual_raw);
+            b = (int)ref_raw(&r->in, 1);
+        }
+        size = 2 * size + (uint64_t)b;
+    }
+    return (int64_t)size + 1;
+}
+
+static int64_t read_axis(ref *r, ref_residual_models *m, int64_t mean,
+                         int64_t square, int k, int far, int *scale)
+{
+    const int64_t center = ref_shift(mean + 8, 4), off = mean - 16 * center;
+    const int lean = off < -2 ? 0 : off > 2 ? 2 : 1;
+    *scale = 0;
+    if (square > 0)
+        *scale = ref_bits((uint64_t)square) - 1;
+    *scale = *scale < 59 ? *scale : 59;
+    ref_cell *any = &m->any[*scale], *here = &m->here[*scale][k][far];
+    if (!ref_bit2(&r->in, &any->zero[lean], &here->zero[lean]))
+        return center;
+    const int minus = ref_bit2(&r->in, &any->sign[lean], &here->sign[lean]);
+    const int64_t size = read_size(r, m, *scale, k, far);
+    return minus ? center - size : center + size;
+}
+
+static int how_far(int64_t coordinate, int64_t mean, int scale)
+{
+    const int64_t z = absolute(16 * coordinate - mean);
+    const int o =
+        z == 0 ? 0 : ref_bits((uint64_t)z * (uint64_t)z) + 3 - scale;
+    if (z > UINT32_MAX)
+        return 3;
+    return o < 2 ? 0 : o < 4 ? 1 : o < 6 ? 2 : 3;
+}
+
+static void adapt(ref_expected *e, int64_t seen, int64_t size)
+{
+    int64_t ratio = seen * 4096 / size;
+    if (ratio > 64 * 4096) {
+        REF_SEEN(ratio_limited);
+        ratio = 64 * 4096;
+    }
+    e->value += (ratio - e->value) * 2 / (2 * e->uses + 5);
+    e->uses = e->uses < 60 ? e->uses + 1 : 60;
+}
+
+static int64_t len(const int64_t *v)
+{
+    int64_t m = 0, sum = 0;
+    for (int i = 0; i < 3; i++) {
+        m = at_least(absolute(v[i]), m);
+        sum += absolute(v[i]);
+    }
+    return m + (sum - m) * 3 / 8;
+}
+
+static void adapt_both(ref_residual_models *m, const ref_prediction *p,
+                       const axis_state *a)
+{
+    int64_t f[3], dot = 0;
+    for (int k = 0; k < 3; k++)
+        dot += a->d[k] * a->n[k];
+    const int64_t h = dot / 16384;
+    for (int k = 0; k < 3; k++)
+        f[k] = a->d[k] - h * a->n[k] / 16384;
+    adapt(across_of(m, p), absolute(h), p->size);
+    adapt(along_of(m, p), len(f) * 181 / 256, p->size);
+}
+
+ref_vec ref_read_residual(ref *r, ref_prediction *p)
+{
+    ref_residual_models *m = &r->residual[p->kind == 2];
+    axis_state a = { 0 };
+    ref_vec at = { 0 };
+    int far = 0;
+    p->along = expected(along_of(m, p), p->size);
+    p->across = expected(across_of(m, p), p->size);
+    order_axes(&a, p->normal);
+    set_ellipsoid(&a, p);
+    for (int k = 0; k < 3; k++) {
+        const int axis = a.axis[k];
+        int64_t mean, square;
+        int scale;
+        expect(&a, k, &mean, &square);
+        mean += p->position.c[axis];
+        const int64_t c = read_axis(r, m, mean, square, k, far, &scale);
+        ref_check(r, c >= 0 && c <= r->header.bounds[axis],
+                  "6.5: a position out of bounds");
+        far = how_far(c, mean, scale);
+        a.d[k] = 16 * c - p->position.c[axis];
+        at.c[axis] = c;
+    }
+    adapt_both(m, p, &a);
+    return at;
+}

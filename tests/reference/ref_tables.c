@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+/* What the models start as: nothing, or the tables of SPEC appendix C. */
+#include "tests/reference/ref.h"
+
+static void load_weights(int32_t *w, const int *table, int count, int factor)
+{
+    for (int i = 0; i < count; i++)
+        w[i] = factor * table[i];
+}
+
+static void load_models(ref_model *m, const int *table, int count)
+{
+    for (int i = 0; i < count; i++)
+        ref_model_load(&m[i], table[i]);
+}
+
+static void load_fits(ref *r)
+{
+    const int *from = ref_PREDICT;
+    for (int kind = 0; kind < 3; kind++)
+        for (int class = 0; class < 9; class++)
+            for (int unknown = 0; unknown < 3; unknown++) {
+                ref_fit *fit = &r->fit[kind][class][unknown];
+                for (int t = 0; t < REF_TERMS; t++)
+                    for (int which = 0; which < 2; which++)
+                        fit->w[which][t] = fit->start[which][t] =
+                            256 * *from++;
+            }
+}
+
+static void load_expected(ref_expected *e, const int *table, int count,
+                          int fallback)
+{
+    for (int i = 0; i < count; i++)
+        e[i].value = table[i] ? table[i] : fallback;
+}
+
+static void load_residual(ref_residual_models *m, int which)
+{
+    load_expected(m->along[0][0], ref_ALONG + which * 135, 135, 900);
+    load_expected(m->across[0], ref_ACROSS + which * 42, 42, 400);
+    for (int scale = 0; scale < 60; scale++) {
+        const int *from = ref_RESIDUAL + 20 * scale;
+        ref_cell *any = &m->any[scale];
+        load_models(any->zero, from, 3);
+        load_models(any->sign, from + 3, 3);
+        load_models(any->unary, from + 6, 14);
+        for (int k = 0; k < 3; k++)
+            for (int far = 0; far < 4; far++)
+                m->here[scale][k][far] = *any;
+    }
+    load_models(m->low[0], ref_LOW, 60 * 3);
+    ref_number_start(&m->escape);
+}
+
+static void start_base(ref_base_models *m)
+{
+    ref_model_start(&m->boundary, 1);
+    ref_model_start(&m->known, 1);
+    ref_model_start(m->neighbour, 2);
+    ref_model_start(&m->sign, 1);
+    ref_number_start(&m->vertex);
+    ref_number_start(&m->position);
+}
+
+static void start_wedges(ref_wedge_models *m)
+{
+    ref_model_start(m->material, 3);
+    ref_model_start(m->ordinary, 3);
+    ref_model_start(m->seam, 3);
+    ref_model_start(m->corner, 4);
+    ref_model_start(m->choice, 2);
+    ref_number_start(&m->pick);
+    for (int i = 0; i < REF_VALUES; i++)
+        for (int sure = 0; sure < 2; sure++)
+            ref_number_start(&m->value[i][sure]);
+    ref_model_start(m->value_sign[0], 2 * REF_VALUES);
+}
+
+void ref_tables_load(ref *r)
+{
+    start_base(&r->base_models);
+    start_wedges(&r->wedge_models);
+    load_models(r->flag, ref_FLAG, 1680);
+    load_weights(r->cut.shape[0][0], ref_SHAPE, 30, 4);
+    load_weights(r->cut.degree[0], ref_DEGREE, 24, 256);
+    load_weights(r->cut.state[0][0][0], ref_STATE, 250, 256);
+    load_weights(r->cut.span[0][0], ref_SPAN, 280, 256);
+    load_models(r->cut.rank[0][0], ref_RANK, 256);
+    load_fits(r);
+    for (int which = 0; which < 2; which++)
+        load_residual(&r->residual[which], which);
+    ref_model_start(r->exact_models.same[0][0], 96);
+    ref_model_start(r->exact_models.rare, 3);
+    for (int axis = 0; axis < 3; axis++)
+        for (int i = 0; i < 4096; i++)
+            r->exact_last[axis][i] = REF_NONE;
+}

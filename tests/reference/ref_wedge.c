@@ -1,0 +1,403 @@
+/* SPDX-License-Identifier: MIT */
+/* SPEC 6.6: materials, wedges, values. */
+#include "tests/reference/ref.h"
+
+/* ---- materials ---------------------------------------------------------- */
+
+static uint32_t read_material(ref *r, uint32_t g, uint32_t s)
+{
+    ref_wedge_models *m = &r->wedge_models;
+    const int differ = g != s;
+    if (!ref_bit(&r->in, &m->material[differ]))
+        return g;
+    if (differ && !ref_bit(&r->in, &m->material[2])) {
+        REF_SEEN(material_second);
+        return s;
+    }
+    const uint64_t picked = ref_read_number(&r->in, &m->pick);
+    REF_SEEN(material_picked);
+    ref_check(r, picked < r->header.material_count, "6.6: material");
+    return (uint32_t)picked;
+}
+
+void ref_read_base_materials(ref *r)
+{
+    if (r->header.material_count == 1)
+        return;
+    for (uint32_t f = 0; f < r->face_count; f++) {
+        const uint32_t guess = f > 0 ? r->material[f - 1] : 0;
+        r->material[f] = read_material(r, guess, guess);
+    }
+}
+
+static uint32_t material_across(const ref *r, uint32_t g, uint32_t h)
+{
+    const uint32_t twin = r->edge[g].twin;
+    if (twin != REF_NONE)
+        return r->material[twin / 3];
+    const uint32_t other = r->edge[h].twin;
+    return other != REF_NONE ? r->material[other / 3] : 0;
+}
+
+/* Of a face over its outer edges g, h. */
+static void read_over(ref *r, uint32_t g, uint32_t h)
+{
+    r->material[g / 3] = read_material(r, material_across(r, g, h),
+                                       material_across(r, h, g));
+}
+
+void ref_read_split_materials(ref *r, uint32_t a, uint32_t b)
+{
+    if (a != REF_NONE)
+        read_over(r, a, a + 1); /* v-a, a-u */
+    if (b != REF_NONE)
+        read_over(r, b + 2, b + 1); /* b-v, u-b */
+}
+
+/* ---- corners ------------------------------------------------------------ */
+
+static void new_wedge(ref *r, uint32_t corner)
+{
+    const ref_level *level = &r->header.level[r->levels];
+    ref_check(r, r->wedge_count < level->wedges, "6.6: too many wedges");
+    ref_check(r,
+              !r->has_base || r->wedge_count - r->block_wedge <
+                                  r->header.block_wedges,
+              "6.6: more than block_wedges");
+    ref_new_wedge(r, corner);
+}
+
+static void read_place(ref *r, uint32_t corner)
+{
+    const uint32_t first = r->vertex[r->edge[corner].vertex].first;
+    const uint64_t turns =
+        ref_read_number(&r->in, &r->wedge_models.pick);
+    uint32_t h = first;
+    REF_SEEN(place);
+    ref_check(r, turns < 4096, "6.6: place");
+    for (uint64_t i = 0; i < turns; i++) {
+        h = ref_left(r, h);
+        ref_check(r, h != REF_NONE && h != first, "6.6: place");
+    }
+    ref_check(r, r->edge[h].wedge != REF_NONE, "6.6: a place without wedge");
+    r->edge[corner].wedge = r->edge[h].wedge;
+}
+
+/* Returns whether the corner got a new wedge. */
+static bool read_corner(ref *r, uint32_t corner, uint32_t g, uint32_t s)
+{
+    ref_wedge_models *m = &r->wedge_models;
+    if (g == REF_NONE) {
+        g = s;
+        s = REF_NONE;
+    }
+    if (g != REF_NONE) {
+        const int agree = s == REF_NONE ? 0 : g == s ? 1 : 2;
+        if (!ref_bit(&r->in, &m->corner[agree])) {
+            r->edge[corner].wedge = g;
+            return false;
+        }
+        if (agree == 2 && !ref_bit(&r->in, &m->corner[3])) {
+            REF_SEEN(corner_second);
+            r->edge[corner].wedge = s;
+            return false;
+        }
+    }
+    if (ref_bit(&r->in, &m->choice[0])) {
+        REF_SEEN(corner_place);
+        read_place(r, corner);
+        return false;
+    }
+    REF_SEEN(corner_new);
+    new_wedge(r, corner);
+    return true;
+}
+
+void ref_read_base_wedges(ref *r)
+{
+    for (uint32_t v = 0; v < r->vertex_count; v++) {
+        const uint32_t first = r->vertex[v].first;
+        uint32_t h = first, before = REF_NONE;
+        do {
+            if (before == REF_NONE)
+                new_wedge(r, h);
+            else
+                read_corner(r, h, before, REF_NONE);
+            before = r->edge[h].wedge;
+            h = ref_left(r, h);
+        } while (h != REF_NONE && h != first);
+    }
+}
+
+/* ---- a split ------------------------------------------------------------ */
+
+typedef struct other {
+    uint32_t corner, guess[2];
+} other;
+
+typedef struct change {
+    uint32_t corner[REF_ROOM], coarse[REF_ROOM]; /* of u */
+    int count;
+    other other[4];
+    int others;
+    uint32_t first_wedge; /* that the split makes */
+} change;
+
+static uint32_t wedge_or_none(const ref *r, uint32_t corner)
+{
+    return corner == REF_NONE ? REF_NONE : r->edge[corner].wedge;
+}
+
+static uint32_t next_or_none(uint32_t h)
+{
+    return h == REF_NONE ? h : ref_next(h);
+}
+
+static void add_other(change *c, uint32_t corner, uint32_t g, uint32_t s)
+{
+    c->other[c->others++] = (other){ corner, { g, s } };
+}
+
+/* The corners of u, whose wedges of before go to coarse[]. */
+static void list_corners(ref *r, change *c, uint32_t u)
+{
+    const uint32_t first = r->vertex[u].first;
+    uint32_t h = first;
+    do {
+        c->corner[c->count] = h;
+        c->coarse[c->count++] = r->edge[h].wedge;
+        r->edge[h].wedge = REF_NONE;
+        h = ref_left(r, h);
+    } while (h != REF_NONE && h != first);
+}
+
+static uint32_t first_coarse(const change *c)
+{
+    for (int i = 0; i < c->count; i++)
+        if (c->coarse[i] != REF_NONE)
+            return c->coarse[i];
+    return REF_NONE;
+}
+
+/* Guesses come over the outer edges: v-a, a-u, u-b, b-v. */
+static void list_others(const ref *r, change *c, uint32_t a, uint32_t b)
+{
+    uint32_t va = REF_NONE, au = REF_NONE, ub = REF_NONE, bv = REF_NONE;
+    if (a != REF_NONE) {
+        va = r->edge[a].twin;
+        au = r->edge[a + 1].twin;
+    }
+    if (b != REF_NONE) {
+        ub = r->edge[b + 1].twin;
+        bv = r->edge[b + 2].twin;
+    }
+    uint32_t v_at_a = wedge_or_none(r, next_or_none(va));
+    const uint32_t v_at_b = wedge_or_none(r, bv);
+    if (v_at_a == REF_NONE && v_at_b == REF_NONE) {
+        REF_SEEN(v_without_guess);
+        v_at_a = first_coarse(c);
+    }
+    if (a != REF_NONE) {
+        add_other(c, a, v_at_a, v_at_b);
+        add_other(c, a + 1, wedge_or_none(r, next_or_none(au)),
+                  wedge_or_none(r, va));
+    }
+    if (b != REF_NONE) {
+        add_other(c, b, v_at_b, v_at_a);
+        add_other(c, b + 2, wedge_or_none(r, ub),
+                  wedge_or_none(r, next_or_none(bv)));
+    }
+}
+
+static uint32_t only_guess(const other *o)
+{
+    return o->guess[0] != REF_NONE ? o->guess[0] : o->guess[1];
+}
+
+static int ordinary_context(const change *c)
+{
+    for (int i = 1; i < c->count; i++)
+        if (c->coarse[i] != REF_NONE && c->coarse[i - 1] != REF_NONE &&
+            c->coarse[i] != c->coarse[i - 1])
+            return 2;
+    for (int i = 0; i < c->others; i++)
+        if (c->other[i].guess[1] != REF_NONE &&
+            c->other[i].guess[0] != c->other[i].guess[1])
+            return 1;
+    return 0;
+}
+
+static void take_ordinary(ref *r, const change *c)
+{
+    new_wedge(r, c->corner[0]);
+    for (int i = 1; i < c->count; i++)
+        r->edge[c->corner[i]].wedge = c->first_wedge;
+    for (int i = 0; i < c->others; i++) {
+        const uint32_t guess = only_guess(&c->other[i]);
+        ref_check(r, guess != REF_NONE, "6.6: a missing guess");
+        r->edge[c->other[i].corner].wedge = guess;
+    }
+}
+
+static void read_child_corners(ref *r, const change *c)
+{
+    ref_wedge_models *m = &r->wedge_models;
+    new_wedge(r, c->corner[0]);
+    for (int i = 1; i < c->count; i++) {
+        const uint32_t here = c->coarse[i], before = c->coarse[i - 1];
+        const int s =
+            here == REF_NONE || before == REF_NONE ? 2 : here != before;
+        if (!ref_bit(&r->in, &m->seam[s])) {
+            r->edge[c->corner[i]].wedge = r->edge[c->corner[i - 1]].wedge;
+        } else if (ref_bit(&r->in, &m->choice[1])) {
+            REF_SEEN(child_place);
+            read_place(r, c->corner[i]);
+        } else {
+            REF_SEEN(child_seam);
+            new_wedge(r, c->corner[i]);
+        }
+    }
+}
+
+/* The first in the vertex' ring that has one. */
+static uint32_t first_wedge_of(const ref *r, uint32_t v, uint32_t but)
+{
+    const uint32_t first = r->vertex[v].first;
+    uint32_t h = first;
+    do {
+        const uint32_t w = r->edge[h].wedge;
+        if (w != REF_NONE && w != but)
+            return w;
+        h = ref_left(r, h);
+    } while (h != REF_NONE && h != first);
+    return REF_NONE;
+}
+
+static void read_others(ref *r, const change *c)
+{
+    for (int i = 0; i < c->others; i++) {
+        const other *o = &c->other[i];
+        if (!read_corner(r, o->corner, o->guess[0], o->guess[1]))
+            continue;
+        const uint32_t made = r->edge[o->corner].wedge;
+        uint32_t like = only_guess(o);
+        if (like == REF_NONE) {
+            REF_SEEN(wedge_without_guess);
+            like = first_wedge_of(r, r->edge[o->corner].vertex, made);
+        }
+        if (like != REF_NONE)
+            r->wedge[made].from = r->wedge[like].from;
+    }
+}
+
+static void set_parents(ref *r, const change *c)
+{
+    for (int i = 0; i < c->count; i++) {
+        uint32_t *from = &r->wedge[r->edge[c->corner[i]].wedge].from;
+        if (c->coarse[i] == REF_NONE)
+            continue;
+        ref_check(r, *from == REF_NONE || *from == c->coarse[i],
+                  "6.6: two parents of a wedge");
+        *from = c->coarse[i];
+    }
+    for (int i = 0; i < c->count; i++) {
+        uint32_t *from = &r->wedge[r->edge[c->corner[i]].wedge].from;
+        if (*from != REF_NONE)
+            continue;
+        REF_SEEN(wedge_without_coarse);
+        *from = only_guess(&c->other[0]);
+        if (*from == REF_NONE)
+            *from = first_coarse(c);
+    }
+}
+
+void ref_read_split_wedges(ref *r, uint32_t u, uint32_t v, uint32_t a,
+                           uint32_t b)
+{
+    change c = { .first_wedge = r->wedge_count };
+    (void)v;
+    list_corners(r, &c, u);
+    list_others(r, &c, a, b);
+    const int context = ordinary_context(&c);
+    if (!ref_bit(&r->in, &r->wedge_models.ordinary[context])) {
+        REF_SEEN(ordinary);
+        take_ordinary(r, &c);
+    } else {
+        REF_SEEN(not_ordinary);
+        read_child_corners(r, &c);
+        set_parents(r, &c);
+        read_others(r, &c);
+        return;
+    }
+    set_parents(r, &c);
+}
+
+/* ---- values ------------------------------------------------------------- */
+
+typedef struct guess {
+    int64_t sum[REF_VALUES];
+    int count;
+} guess;
+
+static void look_at(const ref *r, guess *g, uint32_t w, uint32_t seen)
+{
+    if (seen >= w)
+        return;
+    g->count++;
+    for (int i = 0; i < r->header.value_count; i++)
+        g->sum[i] += r->wedge[seen].value[i];
+}
+
+static guess look_around(const ref *r, uint32_t w)
+{
+    guess g = { 0 };
+    const uint32_t first = r->wedge[w].corner;
+    uint32_t h = first;
+    do {
+        look_at(r, &g, w, r->edge[ref_next(h)].wedge);
+        look_at(r, &g, w, r->edge[ref_prev(h)].wedge);
+        h = ref_left(r, h);
+        if (g.count >= 48)
+            REF_SEEN(values_48);
+    } while (h != REF_NONE && h != first && r->edge[h].wedge == w &&
+             g.count < 48);
+    return g;
+}
+
+static int64_t guess_value(const ref *r, const guess *g, uint32_t w, int i)
+{
+    const uint32_t from = r->wedge[w].from;
+    if (g->count > 0)
+        return (g->sum[i] + g->count / 2) / g->count;
+    if (from < w) {
+        REF_SEEN(value_from_parent);
+        return r->wedge[from].value[i];
+    }
+    REF_SEEN(value_half);
+    return ((1 << r->header.value_bits[i]) - 1) / 2;
+}
+
+static void read_values_of(ref *r, uint32_t w)
+{
+    ref_wedge_models *m = &r->wedge_models;
+    const guess g = look_around(r, w);
+    const int sure = g.count > 2;
+    for (int i = 0; i < r->header.value_count; i++) {
+        int64_t value = guess_value(r, &g, w, i);
+        const int64_t size =
+            (int64_t)ref_read_number(&r->in, &m->value[i][sure]);
+        const bool minus =
+            size > 0 && ref_bit(&r->in, &m->value_sign[i][sure]);
+        value += minus ? -size : size;
+        ref_check(r, value >= 0 && value < 1 << r->header.value_bits[i],
+                  "6.6: a value out of range");
+        r->wedge[w].value[i] = (uint16_t)value;
+    }
+}
+
+void ref_read_values(ref *r)
+{
+    const uint32_t first = r->has_base ? r->block_wedge : 0;
+    for (uint32_t w = first; w < r->wedge_count; w++)
+        read_values_of(r, w);
+}
