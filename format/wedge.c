@@ -153,10 +153,11 @@ pmesh_status pmesh_wedge_ring_code(pmesh_codec *c, pmesh_coder *coder,
 
 /* What a split changed: the corners of u, those of v and the wings in the new
  * faces, and the best guesses for the latter. */
+enum { MOST_CORNERS = PMESH_MAX_RING + 1 }; /* all but one face of v, 2 new */
 typedef struct change {
     uint32_t count; /* corners of u */
-    uint32_t at_u[PMESH_MAX_RING];
-    uint32_t coarse[PMESH_MAX_RING]; /* their wedges before, or PMESH_NONE */
+    uint32_t at_u[MOST_CORNERS];
+    uint32_t coarse[MOST_CORNERS]; /* their wedges before, or PMESH_NONE */
     uint32_t others;
     uint32_t at[4], guess[4], second[4];
 } change;
@@ -192,7 +193,7 @@ static void change_gather(change *d, pmesh_mesh *m, uint32_t u, uint32_t a,
             coarse = m->wedge[h];
         d->count++;
         h = pmesh_turn_left(m, h);
-    } while (h != PMESH_NONE && h != start && d->count < PMESH_MAX_RING);
+    } while (h != PMESH_NONE && h != start && d->count < MOST_CORNERS);
 
     /* Face a is (v, a, u), face b is (v, u, b). Around v the neighbours of the
      * new faces lie across v-a and v-b, around the wings also across u-a and
