@@ -15,9 +15,10 @@ enum {
     BLOCK_ROOM = 1 << 22,  /* far beyond what a block of 64 KiB can need */
     BASE_FACE_ROOM = 96,   /* bytes: a face is a few flags and, at most, one */
     BASE_WEDGE_ROOM = 160, /* vertex of 3 x 24 bits; 32 values of 16 bits */
-    /* Small blocks show progress sooner; they cost 0.2 % of the file. */
+    /* Small blocks show progress sooner, but cost 0.1 % of the file, and what
+     * lies between two levels is refined block by block. */
     COMPACT_BLOCK = PMESH_BLOCK_CHUNK_SIZE - 256,
-    BLOCK = COMPACT_BLOCK / 4
+    BLOCK = COMPACT_BLOCK / 2
 };
 
 pmesh_encoder_config pmesh_encoder_config_default(void)

@@ -29,7 +29,7 @@ static const enc_batch_plan FINE = {
     .taste = { .quadric = 2, .length = 0.75, .uneven = 3 },
     .share = 0.499,
     .coherent = true,
-    .guard = 0.92,
+    .guard = 0.94,
     .turn = 2
 };
 static const enc_batch_plan QUALITY = {
@@ -39,11 +39,22 @@ static const enc_batch_plan QUALITY = {
     .guard = 0.45,
     .turn = 2
 };
+/* The order of the quadrics, length only to decide between flat places: for
+ * coarse levels, which cost few bytes, and for moved parents, who want the best
+ * levels for theirs. */
+static const enc_batch_plan BEST = {
+    .taste = { .quadric = 1, .length = 1e-7, .uneven = 0 },
+    .share = 0.33,
+    .guard = 1
+};
 
 /* PMESH_BALANCED: so many fine batches at most, and none that starts below
  * this share of the vertices. */
 enum { FINE_BATCHES = 2 };
 #define FINE_VERTICES 0.4
+
+/* Levels that start below this share of the vertices are coarse. */
+#define COARSE_VERTICES 0.2
 
 /* The run ends if this many batches in a row take less than a fiftieth. */
 enum { MAX_POOR_BATCHES = 3, POOR_SHARE = 50 };
@@ -178,8 +189,11 @@ static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
     const pmesh_profile profile = run->config->profile;
     const bool fine = run->out->batch_count < FINE_BATCHES &&
                       n > FINE_VERTICES * run->mesh->vertex_count;
+    const bool coarse = n < COARSE_VERTICES * run->mesh->vertex_count ||
+                        run->config->placement == PMESH_OPTIMAL;
     enc_batch_plan plan = profile == PMESH_COMPACT            ? COMPACT[variant]
                           : profile == PMESH_BALANCED && fine ? FINE
+                          : coarse                            ? BEST
                                                               : QUALITY;
     plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)

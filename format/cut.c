@@ -329,7 +329,7 @@ static uint32_t make_shares(options *list, int32_t least)
 {
     uint32_t sum = 0;
     for (uint32_t i = 0; i < list->count; i++) {
-        const int64_t excess = (int64_t)list->cost[i] - least;
+        const uint32_t excess = (uint32_t)list->cost[i] - (uint32_t)least;
         list->share[i] = excess < 16 * 17
                              ? part_of[excess % 16] >> (excess / 16)
                              : 0;

@@ -119,7 +119,8 @@ typedef struct pmesh_level {
 } pmesh_level;
 
 typedef enum pmesh_profile {
-    PMESH_COMPACT = 0,  /* smallest complete file */
+    PMESH_COMPACT = 0,  /* smallest complete file; bakes twice as long, as the
+                           better of two ways is kept */
     PMESH_BALANCED = 1, /* default: small file, good coarse levels */
     PMESH_QUALITY = 2   /* best levels */
 } pmesh_profile;
