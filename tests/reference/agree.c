@@ -22,9 +22,44 @@ typedef struct tally {
         other_reason, views, different;
 } tally;
 
+/* Which rules the files of all kinds broke, by the reference's words. */
+enum { RULES = 100 };
+static struct {
+    const char *rule;
+    uint64_t files;
+} broken[RULES];
+
+static void note_rule(const char *rule)
+{
+    int i = 0;
+    while (i < RULES - 1 && broken[i].rule && strcmp(broken[i].rule, rule))
+        i++;
+    broken[i].rule = rule;
+    broken[i].files++;
+}
+
+static int by_rule(const void *a, const void *b)
+{
+    const char *const *x = a, *const *y = b;
+    return strcmp(*x, *y);
+}
+
+static void print_rules(bool all)
+{
+    size_t count = 0;
+    while (count < RULES && broken[count].rule)
+        count++;
+    qsort(broken, count, sizeof *broken, by_rule);
+    for (size_t i = 0; all && i < count; i++)
+        printf("  %8" PRIu64 "  %s\n", broken[i].files, broken[i].rule);
+    printf("  rules that were broken: %zu\n", count);
+}
+
 static void note(tally *t, const char *what, uint32_t seed, size_t size,
                  const comparison *c)
 {
+    if (*c->rule)
+        note_rule(c->rule);
     t->files++;
     t->bytes += size;
     t->views += c->views;
@@ -162,17 +197,18 @@ int main(int argc, char **argv)
     const uint32_t files = (uint32_t)strtoul(argv[1], NULL, 10);
     compare_random(&random, &prefixes, files);
     compare_wide(&wide, 48, false, files < 10000 ? 45 : 1);
-    compare_wide(&wide, 48, true, files < 10000 ? 45 : 1);
+    compare_wide(&wide, 47, true, files < 10000 ? 45 : 1);
     ref_seen_print(files >= 10000);
     compare_authored(&authored, files / 2);
     compare_mutations(&mended, (uint32_t)strtoul(argv[2], NULL, 10), true,
                       argv + 4, argc - 4);
     compare_mutations(&damaged, (uint32_t)strtoul(argv[3], NULL, 10), false,
                       argv + 4, argc - 4);
+    print_rules(files >= 10000);
     print_tally("golden", &golden);
     print_tally("random", &random);
     print_tally("prefixes", &prefixes);
-    print_tally("cuts of 48", &wide);
+    print_tally("wide rings", &wide);
     print_tally("authored", &authored);
     print_tally("mutations, mended", &mended);
     print_tally("mutations, damaged", &damaged);

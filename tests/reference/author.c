@@ -44,7 +44,8 @@ static void put_f64(shape_bytes *out, double value)
 
 static void put_frame(shape_bytes *out, const ref_header *h)
 {
-    put(out, 0, 1 + 8);
+    put(out, 0, 1); /* version */
+    put(out, 0, 8); /* content_hash, mended later */
     put(out, (uint64_t)h->profile + (h->moving ? 4 : 0), 1);
     put(out, (uint64_t)h->position_bits, 1);
     for (int i = 0; i < 3; i++)
@@ -121,10 +122,10 @@ static bool start(writer *w, const shape_bytes *file)
     for (uint32_t i = 0; i < c.count; i++) {
         const chunk *one = &c.at[i];
         if (w->c.count < 2)
-            size += one->size + 5 + (one->size < 128 ? 1 :
-                                     one->size < 16384 ? 2 : 3);
+            size += chunk_framed_size(one);
         if (one->type == CHUNK_BASE)
-            w->c.at[w->c.count++] = chunk_make(CHUNK_BASE, one->data, one->size);
+            w->c.at[w->c.count++] =
+                chunk_make(CHUNK_BASE, one->data, one->size);
         free(one->data);
     }
     w->r = ref_decode(file->data, size);
@@ -135,6 +136,17 @@ static bool start(writer *w, const shape_bytes *file)
     w->r->in.author = &w->author;
     w->author.user = w;
     return w->r->has_base;
+}
+
+/* What the table says of a level: what there is, or what there would be. */
+static void count_level(ref *r, ref_level *level, uint64_t splits, bool good)
+{
+    const ref_level *was = level - 1;
+    level->vertices = was->vertices + splits;
+    level->faces = good ? r->face_count : was->faces + 2 * splits;
+    level->wedges = good ? r->wedge_count : was->wedges + 40 * splits;
+    if (r->header.attribute_count == 0)
+        level->wedges = level->vertices;
 }
 
 /* A level of one block; false if it breaks a rule on the way. */
@@ -154,10 +166,7 @@ static bool write_level(writer *w, uint8_t splits)
     r->levels++;
     r->in_level = false;
     ref_author_end(&w->author);
-    level->vertices = r->vertex_count;
-    level->faces = r->face_count;
-    level->wedges =
-        r->header.attribute_count > 0 ? r->wedge_count : r->vertex_count;
+    count_level(r, level, splits, good);
     bytes_put(&payload, &splits, 1);
     bytes_put(&payload, w->author.data, w->author.size);
     add_chunk(w, CHUNK_LAST, &payload);

@@ -29,6 +29,14 @@ chunk chunk_make(uint8_t type, const uint8_t *data, size_t size)
     return c;
 }
 
+size_t chunk_framed_size(const chunk *c)
+{
+    size_t bytes = 1 + c->size + 4;
+    for (size_t left = c->size; left >= 128; left /= 128)
+        bytes++;
+    return bytes + 1;
+}
+
 void chunks_take_apart(const shape_bytes *file, chunks *out)
 {
     out->count = 0;

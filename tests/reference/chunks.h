@@ -7,8 +7,13 @@
 
 #include "tests/unit/shapes.h"
 
-enum { CHUNKS = 512, CHUNK_HEADER = 1, CHUNK_BASE = 2, CHUNK_LAST = 4,
-       CHUNK_END = 5 };
+enum {
+    CHUNKS = 512,
+    CHUNK_HEADER = 1,
+    CHUNK_BASE = 2,
+    CHUNK_LAST = 4, /* a block */
+    CHUNK_END = 5
+};
 
 typedef struct chunk {
     uint8_t type, *data; /* data has room for twice the size and some more */
@@ -21,6 +26,7 @@ typedef struct chunks {
 } chunks;
 
 chunk chunk_make(uint8_t type, const uint8_t *data, size_t size);
+size_t chunk_framed_size(const chunk *c); /* with type, size and checksum */
 void bytes_put(shape_bytes *out, const void *data, size_t size);
 
 /* Of a file that is whole. */

@@ -329,9 +329,9 @@ void ref_read_positions(ref *r);
 /* 6.6. */
 void ref_read_base_materials(ref *r);
 void ref_read_base_wedges(ref *r);
-void ref_read_split_materials(ref *r, uint32_t face_a, uint32_t face_b);
-void ref_read_split_wedges(ref *r, uint32_t u, uint32_t v, uint32_t face_a,
-                           uint32_t face_b);
+/* a, b: first half-edges of the faces, or NONE. */
+void ref_read_split_materials(ref *r, uint32_t a, uint32_t b);
+void ref_read_split_wedges(ref *r, uint32_t u, uint32_t a, uint32_t b);
 void ref_read_values(ref *r);
 
 /* 6.7. */

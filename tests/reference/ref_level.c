@@ -201,7 +201,7 @@ static void split(ref *r, uint32_t v, const ref_ring *ring, ref_cut cut)
     if (r->header.material_count > 1)
         ref_read_split_materials(r, a, b);
     if (r->header.attribute_count > 0)
-        ref_read_split_wedges(r, p.u, v, a, b);
+        ref_read_split_wedges(r, p.u, a, b);
 }
 
 /* ---- a block ------------------------------------------------------------ */

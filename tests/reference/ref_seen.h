@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 /* Section, name. */
-#define REF_ELEMENTS(X)                                                        \
+#define REF_ELEMENTS(X)            \
     X("5.2", skippable)            \
     X("5.2", names)                \
     X("5.2", block_goes_on)        \
@@ -64,7 +64,6 @@
     X("6.6", corner_new)           \
     X("6.6", place)                \
     X("6.6", wedge_without_coarse) \
-    X("6.6", wedge_without_guess)  \
     X("6.6", value_from_parent)    \
     X("6.6", value_half)           \
     X("6.6", values_48)            \

@@ -281,10 +281,8 @@ static void read_others(ref *r, const change *c)
             continue;
         const uint32_t made = r->edge[o->corner].wedge;
         uint32_t like = only_guess(o);
-        if (like == REF_NONE) {
-            REF_SEEN(wedge_without_guess);
+        if (like == REF_NONE) /* not with manifolds: a face is beside it */
             like = first_wedge_of(r, r->edge[o->corner].vertex, made);
-        }
         if (like != REF_NONE)
             r->wedge[made].from = r->wedge[like].from;
     }
@@ -311,25 +309,22 @@ static void set_parents(ref *r, const change *c)
     }
 }
 
-void ref_read_split_wedges(ref *r, uint32_t u, uint32_t v, uint32_t a,
-                           uint32_t b)
+void ref_read_split_wedges(ref *r, uint32_t u, uint32_t a, uint32_t b)
 {
     change c = { .first_wedge = r->wedge_count };
-    (void)v;
     list_corners(r, &c, u);
     list_others(r, &c, a, b);
     const int context = ordinary_context(&c);
     if (!ref_bit(&r->in, &r->wedge_models.ordinary[context])) {
         REF_SEEN(ordinary);
         take_ordinary(r, &c);
+        set_parents(r, &c);
     } else {
         REF_SEEN(not_ordinary);
         read_child_corners(r, &c);
         set_parents(r, &c);
         read_others(r, &c);
-        return;
     }
-    set_parents(r, &c);
 }
 
 /* ---- values ------------------------------------------------------------- */

@@ -5,8 +5,9 @@
 #
 # The decoder of this directory, written from SPEC.md alone, agrees with the
 # library: on what the golden files and random ones show at several numbers of
-# faces, on prefixes of them, and on which damaged files are none. Prints how
-# many and which elements of the format none of them has.
+# faces, on prefixes of them, on files that no encoder makes, and on which
+# damaged files are none. Prints how many, and which elements of the format were
+# not met.
 set -u
 build=$(dirname "$PMESH")
 dir=$(mktemp -d) || exit 1
