@@ -197,7 +197,7 @@ int main(int argc, char **argv)
     const uint32_t files = (uint32_t)strtoul(argv[1], NULL, 10);
     compare_random(&random, &prefixes, files);
     compare_wide(&wide, 48, false, files < 10000 ? 45 : 1);
-    compare_wide(&wide, 47, true, files < 10000 ? 45 : 1);
+    compare_wide(&wide, 48, true, files < 10000 ? 45 : 1);
     ref_seen_print(files >= 10000);
     compare_authored(&authored, files / 2);
     compare_mutations(&mended, (uint32_t)strtoul(argv[2], NULL, 10), true,
