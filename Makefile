@@ -59,9 +59,10 @@ $(B)/golden_bake: $(call obj,tests/golden/golden_bake.c \
   tests/golden/golden_mesh.c tests/unit/shapes.c tools/trig.c) $(B)/libpmesh.a
 $(B)/golden_decode: $(B)/tests/golden/golden_decode.o $(B)/libpmesh-dec.a
 $(B)/reference: $(B)/tests/reference/reference.o $(reference_obj)
-$(B)/reference_agree: $(call obj,$(addprefix tests/reference/,agree.c \
-  author.c chunks.c compare.c mutate.c random_mesh.c) tests/golden/golden_mesh.c \
-  tests/unit/shapes.c tools/trig.c) $(reference_obj) $(B)/libpmesh.a
+$(B)/reference_agree: $(call obj,$(addprefix tests/,$(addprefix reference/,\
+  agree.c author.c chunks.c compare.c mutate.c random_mesh.c) \
+  golden/golden_mesh.c unit/shapes.c) tools/trig.c) $(reference_obj) \
+  $(B)/libpmesh.a
 $(libs) $(B)/pmesh $(B)/unit $(B)/train: $(B)/objects.list
 
 inputs = $(filter %.o %.a,$^)

@@ -79,9 +79,10 @@ static void print_tally(const char *what, const tally *t)
 {
     printf("  %s: %" PRIu64 " files, %" PRIu64 " bytes: %" PRIu64
            " accepted, %" PRIu64 " incomplete, %" PRIu64 " rejected, %" PRIu64
-           " too large; %" PRIu64 " views; %" PRIu64 " differ\n",
+           " too large, %" PRIu64 " for another reason; %" PRIu64
+           " views; %" PRIu64 " differ\n",
            what, t->files, t->bytes, t->accepted, t->incomplete, t->rejected,
-           t->too_large, t->views, t->different);
+           t->too_large, t->other_reason, t->views, t->different);
 }
 
 static bool read_file(const char *path, shape_bytes *out)

@@ -88,9 +88,8 @@ shape_bytes chunks_put_together(chunks *c)
                 hash = ref_hash_crc(hash, crc);
         }
         chunk *header = &c->at[0];
-        for (size_t i = 0; i < 8 && c->count > 0 && header->type == CHUNK_HEADER &&
-                           HASH_AT + i < header->size;
-             i++)
+        const bool has_hash = c->count > 0 && header->type == CHUNK_HEADER;
+        for (size_t i = 0; has_hash && i < 8 && HASH_AT + i < header->size; i++)
             header->data[HASH_AT + i] = (uint8_t)(hash >> (8 * i));
     }
     for (uint32_t i = 0; i < c->count; i++)

@@ -297,7 +297,7 @@ uint32_t ref_new_wedge(ref *r, uint32_t corner);
 void ref_join(ref *r, uint32_t g, uint32_t h); /* each NONE or not */
 
 /* Contents (6). */
-void ref_tables_load(ref *r);
+void ref_models_start(ref *r);
 void ref_read_base(ref *r, const uint8_t *data, size_t size);
 void ref_read_block(ref *r, const uint8_t *data, size_t size, bool last);
 void ref_read_exact(ref *r, const uint8_t *data, size_t size);

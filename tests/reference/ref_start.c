@@ -77,7 +77,7 @@ static void start_wedges(ref_wedge_models *m)
     ref_model_start(m->value_sign[0], 2 * REF_VALUES);
 }
 
-void ref_tables_load(ref *r)
+void ref_models_start(ref *r)
 {
     start_base(&r->base_models);
     start_wedges(&r->wedge_models);

@@ -242,7 +242,7 @@ ref *ref_decode(const uint8_t *data, size_t size)
     if (!r)
         return NULL;
     r->rule = "";
-    ref_tables_load(r);
+    ref_models_start(r);
     if (!setjmp(r->stop)) {
         for (size_t i = 0; i < 8; i++) {
             if (i == size)
