@@ -9,20 +9,8 @@
 set -u
 golden=tests/golden
 build=$(dirname "$PMESH")
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-passed=0
-failed=0
-
-try() {
-    if "$1" >"$dir/log" 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "golden: $1 failed"
-        head -n 20 "$dir/log"
-    fi
-}
+suite=golden
+. tests/harness.sh
 
 hashes_are_those_on_record() {
     "$build/golden_decode" $golden/*.pmesh >"$dir/hashes" || return 1
@@ -65,5 +53,4 @@ try files_verify
 try set_can_be_made
 try set_is_small
 try every_option_is_in_some_file
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+summary

@@ -9,24 +9,9 @@ if [ "$config" = sanitize ]; then
     echo "package: skipped, a sanitized library is not for installing"
     exit 0
 fi
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
+suite=package
+. tests/harness.sh
 unset MAKEFLAGS MFLAGS
-passed=0
-failed=0
-
-# try NAME COMMAND...
-try() {
-    name=$1
-    shift
-    if "$@" >"$dir/log" 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "package: $name failed"
-        tail -n 20 "$dir/log"
-    fi
-}
 
 tree() {
     make config="$config" DESTDIR="$dir/root" PREFIX=/opt/pmesh "$@"
@@ -79,5 +64,4 @@ try soname test -e "$dir/root/opt/pmesh/lib/libpmesh.so.0"
 try without_makefile without_makefile
 try uninstall tree uninstall
 try nothing_left nothing_left
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+summary

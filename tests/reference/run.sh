@@ -10,20 +10,8 @@
 # not met.
 set -u
 build=$(dirname "$PMESH")
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-passed=0
-failed=0
-
-try() {
-    if "$1" >"$dir/log" 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "reference: $1 failed"
-        head -n 20 "$dir/log"
-    fi
-}
+suite=reference
+. tests/harness.sh
 
 # Neither code nor headers, but for those of C and its own.
 reference_shares_nothing() {
@@ -59,5 +47,4 @@ try reference_reads_golden_files
 try reference_rejects_what_is_cut_off
 try decoders_agree
 cat "$dir/agree"
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+summary

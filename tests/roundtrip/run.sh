@@ -8,21 +8,8 @@
 # they are there.
 set -u
 PMESH_MODELS=${PMESH_MODELS:-../shared/models}
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-passed=0
-failed=0
-
-# try NAME COMMAND...
-try() {
-    if "$2" >"$dir/log" 2>&1; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "roundtrip: $1: $2 failed"
-        tail -n 5 "$dir/log"
-    fi
-}
+suite=roundtrip
+. tests/harness.sh
 
 # The first number behind a key of `pmesh info`.
 info() {
@@ -121,5 +108,4 @@ done
 for model in "$PMESH_MODELS"/*.obj; do
     [ -e "$model" ] && roundtrip "$model" ""
 done
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+summary

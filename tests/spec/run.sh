@@ -6,19 +6,8 @@
 # tables of appendix C are those of format/tables.c, and every section that a
 # message names exists.
 set -u
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-passed=0
-failed=0
-
-try() {
-    if "$1"; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "spec: $1 failed"
-    fi
-}
+suite=spec
+. tests/harness.sh
 
 # The lines of a part of SPEC.md, from a heading to the next of its level.
 part() {
@@ -58,5 +47,4 @@ sections_exist() {
 try example_is_what_the_program_writes
 try tables_are_those_of_the_code
 try sections_exist
-echo "$passed passed, $failed failed"
-[ "$failed" = 0 ]
+summary
