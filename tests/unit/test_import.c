@@ -296,13 +296,11 @@ TEST(import_keeps_coincident_layers_apart_by_material)
  *
  *    3 ---___     ___--- 4    Their faces continue each other straight across
  *    |       >0,1<       |    the edge, so that it is in the surface twice and
- *    2 ---***     ***--- 5    both ends have one fan. One end must be cut.     */
+ *    2 ---***     ***--- 5    both ends have one fan. One end must be cut. */
 TEST(import_cuts_a_fan_that_meets_a_neighbour_twice)
 {
-    static const double xyz[] = {
-        0, 0, 0,  0, 0, 1,  -1, -0.1, 0.5,  -1, 0.1, 0.5,
-        1, 0.1, 0.5,  1, -0.1, 0.5
-    };
+    static const double xyz[] = { 0,  0,   0,   0, 0,   1,   -1, -0.1, 0.5,
+                                  -1, 0.1, 0.5, 1, 0.1, 0.5, 1,  -0.1, 0.5 };
     static const uint32_t faces[] = {
         0, 1, 2,  0, 2, 3,  0, 3, 1,  1, 3, 2,
         0, 1, 4,  0, 4, 5,  0, 5, 1,  1, 5, 4
