@@ -64,11 +64,6 @@ typedef struct pmesh_mesh_input {
     size_t attribute_count; /* at most PMESH_MAX_ATTRIBUTES */
 } pmesh_mesh_input;
 
-typedef enum pmesh_metric {
-    PMESH_MEMORYLESS = 0, /* quadrics of the current surface: most accurate */
-    PMESH_ACCUMULATED = 1 /* quadrics summed from the original (1997) */
-} pmesh_metric;
-
 /*
  * Hook: writes a base mesh into at most `capacity` bytes at `out` as a Draco
  * buffer, with positions as they are, and sets *size. No two vertices may

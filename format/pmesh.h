@@ -130,6 +130,11 @@ typedef enum pmesh_placement {
     PMESH_OPTIMAL = 1 /* vertices move to where the error is least */
 } pmesh_placement;
 
+typedef enum pmesh_metric {
+    PMESH_MEMORYLESS = 0, /* quadrics of the current surface: most accurate */
+    PMESH_ACCUMULATED = 1 /* quadrics summed from the original (1997) */
+} pmesh_metric;
+
 /* Who codes the shape of the base mesh. Attributes are coded by ourselves in
  * both cases. */
 typedef enum pmesh_base_coder {

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * enc_lod_guard.h - which contractions of an enc_lod are harmless.
+ */
+#ifndef ENC_LOD_GUARD_H
+#define ENC_LOD_GUARD_H
+
+#include "encoder/enc_lod.h"
+
+typedef enum enc_lod_strictness {
+    ENC_LOD_SEAMS,    /* two lines of seams stay apart */
+    ENC_LOD_TOPOLOGY, /* they may touch */
+    ENC_LOD_LOOSE     /* anything goes */
+} enc_lod_strictness;
+
+/*
+ * True if contracting u and v keeps the topology: they have no common
+ * neighbours but the wings, the outer vertices of the faces between them; no
+ * two faces come to lie over the same vertices; and the ends are not on two
+ * different lines (Dey, Edelsbrunner, Guha, Nekhayev 1999: the link condition,
+ * for any 2-complex).
+ */
+bool enc_lod_can_join(enc_lod *lod, uint32_t u, uint32_t v,
+                      enc_lod_strictness strictness);
+
+/* True if a face of u or v that survives would turn over or lose its area,
+ * were both at `place`. Faces that have no area already are free. */
+bool enc_lod_flips(const enc_lod *lod, uint32_t u, uint32_t v,
+                   const double place[3]);
+
+#endif

@@ -1,0 +1,403 @@
+/* SPDX-License-Identifier: MIT */
+#include "encoder/pmesh_simplify.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "encoder/enc_heap.h"
+#include "encoder/enc_lod_guard.h"
+#include "encoder/enc_lod_import.h"
+#include "encoder/enc_lod_price.h"
+#include "format/alloc.h"
+
+/* What is known of a pair that was refused: the other direction is next. */
+enum { TURNED = 1 };
+
+typedef struct enc_lod_run {
+    const pmesh_simplify_options *options;
+    enc_lod lod;
+    enc_lod_channels channels;
+    enc_lod_pricer pricer;
+    enc_heap heap;
+    uint8_t *turned;  /* per pair */
+    uint32_t *priced; /* per pair: the contraction after which it was */
+    double *drift;    /* per vertex: squared distance so far */
+    enc_lod_strictness strictness;
+    uint32_t tick;
+    uint32_t face_target, vertex_target;
+    double error_limit, error; /* squared, in the frame */
+    bool too_far; /* some contraction was refused for the limit */
+} enc_lod_run;
+
+pmesh_simplify_options pmesh_simplify_options_default(void)
+{
+    return (pmesh_simplify_options){
+        .placement = PMESH_PLACE_OPTIMAL,
+        .metric = PMESH_MEMORYLESS,
+        .cost = PMESH_COST_QUADRIC,
+        .boundary = 10,
+        .seam = 3,
+    };
+}
+
+/* ---- queue --------------------------------------------------------------- */
+
+static void price_pair(enc_lod_run *run, uint32_t pair)
+{
+    const uint32_t u = run->lod.end_vertex[2 * pair];
+    const uint32_t v = run->lod.end_vertex[2 * pair + 1];
+    const double cost = enc_lod_pricer_cost(&run->pricer, u, v, false);
+
+    run->turned[pair] = 0;
+    if (cost < INFINITY)
+        enc_heap_put(&run->heap, pair, cost);
+    else
+        enc_heap_remove(&run->heap, pair);
+}
+
+static void price_all(enc_lod_run *run)
+{
+    for (uint32_t pair = 0; pair < run->lod.pair_count; pair++)
+        if (run->lod.end_vertex[2 * pair] != ENC_NONE)
+            price_pair(run, pair);
+}
+
+/* Pairs of v that were not priced since the last contraction. */
+static void price_around(enc_lod_run *run, uint32_t v)
+{
+    uint32_t end = run->lod.first_end[v];
+
+    if (end == ENC_NONE)
+        return;
+    do {
+        if (run->priced[end / 2] == run->tick)
+            continue;
+        run->priced[end / 2] = run->tick;
+        price_pair(run, end / 2);
+    } while ((end = run->lod.end_next[end]) != run->lod.first_end[v]);
+}
+
+/* ---- contraction --------------------------------------------------------- */
+
+static bool values_flip(const enc_lod_run *run, uint32_t v, uint32_t other)
+{
+    const enc_lod *lod = &run->lod;
+    const enc_lod_pricer *p = &run->pricer;
+    const size_t width = p->active + p->passive;
+    uint32_t c = lod->first_corner[v];
+
+    do {
+        const double *before[3], *after[3];
+        if (enc_lod_corner_of(lod, c, other) != ENC_NONE)
+            continue;
+        for (uint32_t k = 0; k < 3; k++) {
+            const uint32_t wedge = lod->corner_wedge[c - c % 3 + k];
+            before[k] = &p->value[wedge * width];
+            after[k] = enc_lod_pricer_next(p, wedge);
+        }
+        if (enc_lod_channels_flip(&run->channels, before, after))
+            return true;
+    } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
+    return false;
+}
+
+static bool is_legal(enc_lod_run *run, const enc_lod_offer *offer)
+{
+    return enc_lod_can_join(&run->lod, offer->gone, offer->kept,
+                            run->strictness) &&
+           !enc_lod_flips(&run->lod, offer->gone, offer->kept, offer->place) &&
+           (run->channels.count == 0 ||
+            (!values_flip(run, offer->gone, offer->kept) &&
+             !values_flip(run, offer->kept, offer->gone)));
+}
+
+/* Squared distance from the original. Memoryless quadrics see only the mesh
+ * they are made from, so what went before is added. */
+static double total_error(const enc_lod_run *run, const enc_lod_offer *offer)
+{
+    if (run->options->metric == PMESH_ACCUMULATED)
+        return offer->distance;
+    return offer->distance +
+           fmax(run->drift[offer->gone], run->drift[offer->kept]);
+}
+
+static void renew_around(enc_lod_run *run, uint32_t v)
+{
+    enc_lod *lod = &run->lod;
+    uint32_t end = lod->first_end[v];
+
+    if (run->options->metric == PMESH_MEMORYLESS)
+        enc_lod_pricer_renew(&run->pricer, v);
+    else
+        enc_lod_survey(lod, v);
+    do {
+        const uint32_t w = lod->end_vertex[end ^ 1];
+        if (run->options->metric == PMESH_MEMORYLESS)
+            enc_lod_pricer_renew(&run->pricer, w);
+        else
+            enc_lod_survey(lod, w);
+    } while ((end = lod->end_next[end]) != lod->first_end[v]);
+    run->tick++;
+    price_around(run, v);
+    do
+        price_around(run, lod->end_vertex[end ^ 1]);
+    while ((end = lod->end_next[end]) != lod->first_end[v]);
+}
+
+/* Pairs that will go with this one leave the queue: those of `gone` to
+ * neighbours of both. */
+static void drop_dead(enc_lod_run *run, uint32_t gone)
+{
+    uint32_t end = run->lod.first_end[gone];
+
+    do
+        enc_heap_remove(&run->heap, end / 2);
+    while ((end = run->lod.end_next[end]) != run->lod.first_end[gone]);
+}
+
+static void contract(enc_lod_run *run, uint32_t pair,
+                     const enc_lod_offer *offer, double error)
+{
+    drop_dead(run, offer->gone);
+    run->drift[offer->kept] = error;
+    run->error = fmax(run->error, error);
+    enc_lod_pricer_move(&run->pricer, offer);
+    enc_lod_contract(&run->lod, pair, offer->gone, offer->kept);
+    enc_lod_pricer_settle(&run->pricer, offer);
+    if (run->lod.first_corner[offer->kept] != ENC_NONE)
+        renew_around(run, offer->kept);
+}
+
+static void try_pair(enc_lod_run *run, uint32_t pair)
+{
+    const uint32_t u = run->lod.end_vertex[2 * pair];
+    const uint32_t v = run->lod.end_vertex[2 * pair + 1];
+    const bool turned = run->turned[pair] & TURNED;
+    const enc_lod_offer offer =
+        enc_lod_pricer_offer(&run->pricer, u, v, turned);
+
+    const double error = total_error(run, &offer);
+    if (error > run->error_limit) {
+        run->too_far = true;
+        return;
+    }
+    if (is_legal(run, &offer)) {
+        contract(run, pair, &offer, error);
+        return;
+    }
+    if (run->pricer.placement != PMESH_PLACE_ENDPOINT || turned)
+        return;
+    const double cost = enc_lod_pricer_cost(&run->pricer, u, v, true);
+    run->turned[pair] |= TURNED;
+    if (cost < INFINITY)
+        enc_heap_put(&run->heap, pair, cost);
+}
+
+static bool is_done(const enc_lod_run *run)
+{
+    return run->lod.faces <= run->face_target ||
+           run->lod.vertices <= run->vertex_target;
+}
+
+static void contract_all(enc_lod_run *run)
+{
+    const enc_lod_strictness last =
+        run->options->loose ? ENC_LOD_LOOSE : ENC_LOD_TOPOLOGY;
+    enc_heap_entry entry;
+
+    for (;;) {
+        while (!is_done(run) && enc_heap_pop(&run->heap, &entry))
+            try_pair(run, entry.item);
+        if (is_done(run) || run->strictness == last)
+            return;
+        run->strictness++;
+        price_all(run);
+    }
+}
+
+/* ---- beginning and end --------------------------------------------------- */
+
+static bool in_range(const pmesh_simplify_options *o)
+{
+    return o->ratio >= 0 && o->ratio < INFINITY && o->error >= 0 &&
+           o->weld >= 0 && o->weld < INFINITY && o->boundary >= 0 &&
+           o->boundary < INFINITY && o->seam >= 0 && o->seam < INFINITY &&
+           (unsigned)o->placement <= PMESH_PLACE_ENDPOINT &&
+           (unsigned)o->cost <= PMESH_COST_CUSTOM &&
+           (unsigned)o->metric <= PMESH_ACCUMULATED &&
+           (o->cost != PMESH_COST_CUSTOM || o->hook) &&
+           isfinite(o->camera[0]) && isfinite(o->camera[1]) &&
+           isfinite(o->camera[2]);
+}
+
+/* The first of the bounds that is reached counts. */
+static void set_targets(enc_lod_run *run, size_t input_faces, double extent)
+{
+    const pmesh_simplify_options *o = run->options;
+    double faces = (double)o->faces;
+
+    if (o->ratio > 0)
+        faces = fmax(faces, floor(o->ratio * (double)input_faces));
+    run->face_target = faces < UINT32_MAX ? (uint32_t)faces : UINT32_MAX;
+    run->vertex_target =
+        o->vertices < UINT32_MAX ? (uint32_t)o->vertices : UINT32_MAX;
+    const double limit = o->error / extent;
+    run->error_limit = o->error > 0 ? limit * limit : INFINITY;
+}
+
+static pmesh_status prepare(enc_lod_run *run, const pmesh_allocator *a)
+{
+    const pmesh_status status =
+        enc_heap_create(a, run->lod.pair_count, &run->heap);
+
+    run->turned = pmesh_alloc_zero(a, run->lod.pair_count, 1);
+    run->priced =
+        pmesh_alloc_zero(a, run->lod.pair_count, sizeof *run->priced);
+    run->drift =
+        pmesh_alloc_zero(a, run->lod.vertex_count, sizeof *run->drift);
+    if (status != PMESH_OK || !run->turned || !run->priced || !run->drift)
+        return PMESH_E_MEMORY;
+    for (uint32_t v = 0; v < run->lod.vertex_count; v++)
+        if (run->lod.first_corner[v] != ENC_NONE)
+            enc_lod_pricer_renew(&run->pricer, v);
+    price_all(run);
+    return PMESH_OK;
+}
+
+static void release(enc_lod_run *run, const pmesh_allocator *a)
+{
+    pmesh_release(a, run->turned, run->lod.pair_count, 1);
+    pmesh_release(a, run->priced, run->lod.pair_count, sizeof *run->priced);
+    pmesh_release(a, run->drift, run->lod.vertex_count, sizeof *run->drift);
+    enc_heap_destroy(&run->heap);
+    enc_lod_pricer_destroy(&run->pricer);
+    enc_lod_destroy(&run->lod);
+}
+
+static void put_vertices(const enc_lod_run *run, const enc_lod_frame *frame,
+                         pmesh_simplify_output *out)
+{
+    const enc_lod *lod = &run->lod;
+    const size_t width = run->channels.active + run->channels.passive;
+
+    for (uint32_t c = 0; c < 3 * lod->face_count; c++) {
+        const uint32_t v = lod->corner_vertex[c], wedge = lod->corner_wedge[c];
+        if (v == ENC_NONE)
+            continue;
+        for (size_t i = 0; i < 3 && out->positions; i++)
+            out->positions[3 * (size_t)wedge + i] =
+                frame->origin[i] + frame->extent * lod->position[v][i];
+        for (unsigned i = 0; i < run->channels.count; i++)
+            for (unsigned k = 0; k < run->channels.channel[i].components &&
+                                 out->attribute_values[i]; k++)
+                out->attribute_values[i]
+                    [wedge * (size_t)run->channels.channel[i].components + k] =
+                    enc_lod_channels_value(&run->channels,
+                                           &run->pricer.value[wedge * width],
+                                           i, k);
+    }
+}
+
+static void put_faces(const enc_lod *lod, pmesh_simplify_output *out)
+{
+    size_t count = 0;
+
+    for (uint32_t f = 0; f < lod->face_count; f++) {
+        if (lod->corner_vertex[3 * f] == ENC_NONE)
+            continue;
+        for (size_t k = 0; k < 3; k++)
+            out->indices[3 * count + k] = lod->corner_wedge[3 * f + k];
+        if (out->face_source)
+            out->face_source[count] = f;
+        count++;
+    }
+    out->face_count = count;
+    out->vertex_count = lod->vertices;
+}
+
+static void put_costs(const enc_heap *heap, pmesh_simplify_output *out)
+{
+    double sum = 0;
+
+    out->cost_least = out->cost_most =
+        heap->count > 0 ? heap->entry[0].cost : 0;
+    for (uint32_t i = 0; i < heap->count; i++) {
+        sum += heap->entry[i].cost;
+        out->cost_most = fmax(out->cost_most, heap->entry[i].cost);
+    }
+    out->cost_mean = heap->count > 0 ? sum / heap->count : 0;
+}
+
+static pmesh_simplify_end reason(const enc_lod_run *run)
+{
+    if (run->lod.faces <= run->face_target)
+        return PMESH_END_FACES;
+    if (run->lod.vertices <= run->vertex_target)
+        return PMESH_END_VERTICES;
+    return run->too_far ? PMESH_END_ERROR : PMESH_END_EXHAUSTED;
+}
+
+pmesh_status pmesh_simplify_mesh(const pmesh_simplify_input *mesh,
+                                 const pmesh_simplify_options *options,
+                                 pmesh_simplify_output *out)
+{
+    const pmesh_allocator a = pmesh_allocator_resolve(options->allocator);
+    enc_lod_run run = { .options = options };
+    bool moving = out->positions != NULL;
+    enc_lod_frame frame;
+    double *value;
+
+    if (!in_range(options) || !out->indices)
+        return PMESH_E_ARGUMENT;
+    for (size_t i = 0; i < mesh->attribute_count && i < PMESH_MAX_ATTRIBUTES;
+         i++)
+        moving = moving && out->attribute_values[i];
+    pmesh_status status = enc_lod_import(&a, mesh, options->weld, !moving,
+                                         &run.channels, &frame, &run.lod,
+                                         &value);
+    if (status != PMESH_OK)
+        return status;
+    const size_t all = run.lod.faces;
+    set_targets(&run, all, frame.extent);
+    status = enc_lod_pricer_create(
+        &run.lod, options, &frame,
+        moving ? options->placement : PMESH_PLACE_ENDPOINT, &run.channels,
+        value, &run.pricer);
+    if (status == PMESH_OK)
+        status = prepare(&run, &a);
+    if (status == PMESH_OK) {
+        contract_all(&run);
+        put_faces(&run.lod, out);
+        put_vertices(&run, &frame, out);
+        put_costs(&run.heap, out);
+        out->end = reason(&run);
+        out->error = sqrt(run.error) * frame.extent;
+        out->dropped_faces = mesh->face_count - all;
+    }
+    release(&run, &a);
+    return status;
+}
+
+pmesh_status pmesh_simplify(const uint32_t *indices, size_t face_count,
+                            const float *positions, size_t vertex_count,
+                            size_t stride, size_t faces, double error,
+                            uint32_t *out, size_t *out_faces, double *out_error)
+{
+    const pmesh_simplify_input mesh = { .indices = indices,
+                                        .face_count = face_count,
+                                        .vertex_count = vertex_count,
+                                        .positions = positions,
+                                        .stride = stride };
+    pmesh_simplify_options options = pmesh_simplify_options_default();
+    pmesh_simplify_output result = { .indices = out };
+
+    options.faces = faces;
+    options.error = error;
+    const pmesh_status status = pmesh_simplify_mesh(&mesh, &options, &result);
+    if (status == PMESH_OK) {
+        *out_faces = result.face_count;
+        if (out_error)
+            *out_error = result.error;
+    }
+    return status;
+}
