@@ -22,6 +22,7 @@ typedef struct enc_lod_run {
     uint8_t *turned;  /* per pair */
     uint32_t *priced; /* per pair: the contraction after which it was */
     double *drift;    /* per vertex: squared distance so far */
+    uint8_t *moved;   /* per vertex: it is at no place of the input */
     enc_lod_strictness strictness;
     uint32_t tick;
     uint32_t face_target, vertex_target;
@@ -160,6 +161,7 @@ static void contract(enc_lod_run *run, uint32_t pair,
 {
     drop_dead(run, offer->gone);
     run->drift[offer->kept] = error;
+    run->moved[offer->kept] = run->pricer.placement != PMESH_PLACE_ENDPOINT;
     run->error = fmax(run->error, error);
     enc_lod_pricer_move(&run->pricer, offer);
     enc_lod_contract(&run->lod, pair, offer->gone, offer->kept);
@@ -255,7 +257,9 @@ static pmesh_status prepare(enc_lod_run *run, const pmesh_allocator *a)
         pmesh_alloc_zero(a, run->lod.pair_count, sizeof *run->priced);
     run->drift =
         pmesh_alloc_zero(a, run->lod.vertex_count, sizeof *run->drift);
-    if (status != PMESH_OK || !run->turned || !run->priced || !run->drift)
+    run->moved = pmesh_alloc_zero(a, run->lod.vertex_count, 1);
+    if (status != PMESH_OK || !run->turned || !run->priced || !run->drift ||
+        !run->moved)
         return PMESH_E_MEMORY;
     for (uint32_t v = 0; v < run->lod.vertex_count; v++)
         if (run->lod.first_corner[v] != ENC_NONE)
@@ -269,32 +273,47 @@ static void release(enc_lod_run *run, const pmesh_allocator *a)
     pmesh_release(a, run->turned, run->lod.pair_count, 1);
     pmesh_release(a, run->priced, run->lod.pair_count, sizeof *run->priced);
     pmesh_release(a, run->drift, run->lod.vertex_count, sizeof *run->drift);
+    pmesh_release(a, run->moved, run->lod.vertex_count, 1);
     enc_heap_destroy(&run->heap);
     enc_lod_pricer_destroy(&run->pricer);
     enc_lod_destroy(&run->lod);
 }
 
-static void put_vertices(const enc_lod_run *run, const enc_lod_frame *frame,
-                         pmesh_simplify_output *out)
+static void put_position(const enc_lod_run *run,
+                         const pmesh_simplify_input *mesh,
+                         const enc_lod_frame *frame, uint32_t vertex,
+                         double out[3])
 {
-    const enc_lod *lod = &run->lod;
-    const size_t width = run->channels.active + run->channels.passive;
+    if (!run->moved[vertex]) {
+        enc_lod_input_position(mesh, vertex, out);
+        return;
+    }
+    for (int i = 0; i < 3; i++)
+        out[i] =
+            frame->origin[i] + frame->extent * run->lod.position[vertex][i];
+}
 
-    for (uint32_t c = 0; c < 3 * lod->face_count; c++) {
-        const uint32_t v = lod->corner_vertex[c], wedge = lod->corner_wedge[c];
+static void put_vertices(const enc_lod_run *run,
+                         const pmesh_simplify_input *mesh,
+                         const enc_lod_frame *frame, pmesh_simplify_output *out)
+{
+    const enc_lod_channels *channels = &run->channels;
+    const size_t width = channels->active + channels->passive;
+
+    for (uint32_t c = 0; c < 3 * run->lod.face_count; c++) {
+        const uint32_t v = run->lod.corner_vertex[c];
+        const size_t wedge = run->lod.corner_wedge[c];
         if (v == ENC_NONE)
             continue;
-        for (size_t i = 0; i < 3 && out->positions; i++)
-            out->positions[3 * (size_t)wedge + i] =
-                frame->origin[i] + frame->extent * lod->position[v][i];
-        for (unsigned i = 0; i < run->channels.count; i++)
-            for (unsigned k = 0; k < run->channels.channel[i].components &&
-                                 out->attribute_values[i]; k++)
-                out->attribute_values[i]
-                    [wedge * (size_t)run->channels.channel[i].components + k] =
-                    enc_lod_channels_value(&run->channels,
-                                           &run->pricer.value[wedge * width],
-                                           i, k);
+        if (out->positions)
+            put_position(run, mesh, frame, v, &out->positions[3 * wedge]);
+        for (unsigned i = 0; i < channels->count; i++) {
+            const unsigned n = channels->channel[i].components;
+            const double *row = &run->pricer.value[wedge * width];
+            for (unsigned k = 0; k < n && out->attribute_values[i]; k++)
+                out->attribute_values[i][wedge * n + k] =
+                    enc_lod_channels_value(channels, row, i, k);
+        }
     }
 }
 
@@ -305,8 +324,12 @@ static void put_faces(const enc_lod *lod, pmesh_simplify_output *out)
     for (uint32_t f = 0; f < lod->face_count; f++) {
         if (lod->corner_vertex[3 * f] == ENC_NONE)
             continue;
-        for (size_t k = 0; k < 3; k++)
+        for (size_t k = 0; k < 3; k++) {
             out->indices[3 * count + k] = lod->corner_wedge[3 * f + k];
+            if (out->position_indices)
+                out->position_indices[3 * count + k] =
+                    lod->corner_vertex[3 * f + k];
+        }
         if (out->face_source)
             out->face_source[count] = f;
         count++;
@@ -368,7 +391,7 @@ pmesh_status pmesh_simplify_mesh(const pmesh_simplify_input *mesh,
     if (status == PMESH_OK) {
         contract_all(&run);
         put_faces(&run.lod, out);
-        put_vertices(&run, &frame, out);
+        put_vertices(&run, mesh, &frame, out);
         put_costs(&run.heap, out);
         out->end = reason(&run);
         out->error = sqrt(run.error) * frame.extent;

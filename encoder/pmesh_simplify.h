@@ -164,6 +164,8 @@ typedef enum pmesh_simplify_end {
 /* The result; memory is the caller's. Members may be NULL but for `indices`. */
 typedef struct pmesh_simplify_output {
     uint32_t *indices;     /* room for 3 * face_count of the input */
+    uint32_t *position_indices; /* the same size: a vertex at the same place,
+                                   one number for each place */
     uint32_t *face_source; /* room for face_count: which face of the input */
     /* Vertices at their new places, by the numbers of the input's: those that
      * `indices` does not name are as they were. Without any of these two, and

@@ -24,6 +24,7 @@ typedef struct subcommand {
 static const subcommand subcommands[] = {
     { "bake", cmd_bake, "turn a triangle mesh into a .pmesh file" },
     { "extract", cmd_extract, "write a mesh of any size out of a .pmesh" },
+    { "simplify", cmd_simplify, "write a mesh file with fewer faces" },
     { "info", cmd_info, "print what the header of a .pmesh says" },
     { "verify", cmd_verify, "decode .pmesh files and check every byte" },
     { "compare", cmd_compare, "measure the distance of two meshes" },
