@@ -9,7 +9,7 @@
 
 /* Decides between contractions that cost nothing: short edges first. Far above
  * the rounding of sums, far below what can be seen. */
-#define LENGTH_TIE 1e-8
+#define LENGTH_TIE 1e-12
 
 /* The factor f of the camera cost. */
 #define CAMERA_FACTOR 0.01
@@ -34,6 +34,10 @@ pmesh_status enc_lod_pricer_create(enc_lod *lod,
                              .passive = channels->passive,
                              .channels = *channels,
                              .value = value };
+    if (options->metric == PMESH_MEMORYLESS) {
+        out->recall = options->memory / sqrt(lod->faces);
+        out->memory = pmesh_alloc(a, n, sizeof *out->memory);
+    }
     out->quadric = pmesh_alloc(a, n, sizeof *out->quadric);
     out->tail = pmesh_alloc(a, n * tail, sizeof *out->tail);
     out->wedge = pmesh_alloc(a, n, sizeof *out->wedge);
@@ -41,7 +45,8 @@ pmesh_status enc_lod_pricer_create(enc_lod *lod,
     out->choice = pmesh_alloc(a, n, sizeof *out->choice);
     out->stamp = pmesh_alloc_zero(a, n, sizeof *out->stamp);
     out->next = pmesh_alloc(a, n * values, sizeof *out->next);
-    if (!out->value || !out->quadric || !out->tail || !out->wedge ||
+    if (!out->value || !out->quadric || !out->tail ||
+        (options->metric == PMESH_MEMORYLESS && !out->memory) || !out->wedge ||
         !out->fate || !out->choice || !out->stamp || !out->next) {
         enc_lod_pricer_destroy(out);
         return PMESH_E_MEMORY;
@@ -59,6 +64,7 @@ void enc_lod_pricer_destroy(enc_lod_pricer *p)
     pmesh_release(a, p->value, n * values, sizeof *p->value);
     pmesh_release(a, p->quadric, n, sizeof *p->quadric);
     pmesh_release(a, p->tail, n * enc_joint_tail(p->active), sizeof *p->tail);
+    pmesh_release(a, p->memory, n, sizeof *p->memory);
     pmesh_release(a, p->wedge, n, sizeof *p->wedge);
     pmesh_release(a, p->fate, n, sizeof *p->fate);
     pmesh_release(a, p->choice, n, sizeof *p->choice);
@@ -157,6 +163,24 @@ void enc_lod_pricer_renew(enc_lod_pricer *p, uint32_t v)
             hold_edge(p, c, enc_lod_after(c));
             hold_edge(p, c, enc_lod_before(c));
         }
+    } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
+}
+
+/* Weighted by the root of the area: by the area, thin limbs would count for
+ * too little, and with equal weights, flat parts of few faces. */
+void enc_lod_pricer_remember(enc_lod_pricer *p, uint32_t v)
+{
+    const enc_lod *lod = p->lod;
+    uint32_t c = lod->first_corner[v];
+
+    p->memory[v] = (enc_quadric){ .c = 0 };
+    do {
+        double n[3];
+        enc_lod_normal(lod, c, lod->position[v], n);
+        const double square = dot(n, n);
+        if (square > 0)
+            enc_quadric_add_plane(&p->memory[v], n,
+                                  p->recall * sqrt(0.5 * sqrt(square)));
     } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
 }
 
@@ -279,11 +303,24 @@ static void sum_group(const enc_lod_pricer *p, const enc_lod_edge *e,
     }
 }
 
-/* All wedges together, as a quadric of the place alone. */
+/* What both ends remember, about the middle. */
+static void sum_memory(const enc_lod_pricer *p, const enc_lod_edge *e,
+                       enc_quadric *sum)
+{
+    const double back[3] = { -e->half[0], -e->half[1], -e->half[2] };
+
+    *sum = (enc_quadric){ .c = 0 };
+    if (p->recall > 0) {
+        enc_quadric_add(sum, &p->memory[e->gone], e->half);
+        enc_quadric_add(sum, &p->memory[e->kept], back);
+    }
+}
+
+/* That and all wedges together, as a quadric of the place alone. */
 static void sum_all(const enc_lod_pricer *p, const enc_lod_edge *e,
                     enc_quadric *total)
 {
-    *total = (enc_quadric){ .c = 0 };
+    sum_memory(p, e, total);
     for (uint32_t w = 0; w < p->wedge_count; w++) {
         double tail[ENC_JOINT_TAIL_MAX], center[ENC_JOINT_MAX];
         const double none[3] = { 0, 0, 0 };
@@ -393,9 +430,12 @@ static double onto_kept(enc_lod_pricer *p, const enc_lod_edge *e,
                         double *weight)
 {
     const double way[3] = { -2 * e->half[0], -2 * e->half[1], -2 * e->half[2] };
-    double sum = 0;
+    const double back[3] = { -e->half[0], -e->half[1], -e->half[2] };
+    enc_quadric memory;
 
-    *weight = 0;
+    sum_memory(p, e, &memory);
+    *weight = memory.weight;
+    double sum = enc_quadric_value(&memory, back);
     for (uint32_t w = p->wedge_count; w-- > 0;) {
         const uint32_t wedge = p->wedge[w], group = p->fate[wedge];
         double best = INFINITY;
@@ -518,7 +558,7 @@ static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
         enc_quadric total;
         enc_plane keep;
         sum_all(p, &e, &total);
-        const bool held = full && p->placement == PMESH_PLACE_OPTIMAL &&
+        const bool held = p->placement == PMESH_PLACE_OPTIMAL &&
                           volume_plane(p, &e, &keep);
         enc_lod_place(p->placement, &total, e.half, held ? &keep : NULL, x);
         offer.quadric = enc_quadric_value(&total, x);
@@ -583,8 +623,22 @@ static void carry_over(enc_lod_pricer *p, const enc_lod_offer *offer,
     }
 }
 
+static void carry_memory(enc_lod_pricer *p, const enc_lod_offer *offer)
+{
+    double from_gone[3], from_kept[3];
+    enc_quadric sum = { .c = 0 };
+
+    difference(p->lod->position[offer->gone], offer->place, from_gone);
+    difference(p->lod->position[offer->kept], offer->place, from_kept);
+    enc_quadric_add(&sum, &p->memory[offer->gone], from_gone);
+    enc_quadric_add(&sum, &p->memory[offer->kept], from_kept);
+    p->memory[offer->kept] = sum;
+}
+
 void enc_lod_pricer_move(enc_lod_pricer *p, const enc_lod_offer *offer)
 {
+    if (p->recall > 0)
+        carry_memory(p, offer);
     for (uint32_t w = 0; w < p->wedge_count; w++) {
         const uint32_t wedge = p->wedge[w];
         double tail[ENC_JOINT_TAIL_MAX];

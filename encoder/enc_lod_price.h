@@ -40,6 +40,10 @@ typedef struct enc_lod_pricer {
     double *value; /* per wedge */
     enc_quadric *quadric; /* per wedge, about its position and values */
     double *tail;         /* of it; NULL without active values */
+    /* Per vertex: planes of the original's faces, summed, times `recall`. What
+     * is memoryless forgets a limb once it is thin. NULL if accumulated. */
+    enc_quadric *memory;
+    double recall;
 
     /* The wedges around the last pair; see gather(). */
     uint32_t *wedge; /* list: those of the vertex that stays come first */
@@ -70,6 +74,9 @@ void enc_lod_pricer_destroy(enc_lod_pricer *p);
 
 /* Surveys v and computes its wedges' quadrics from its faces. */
 void enc_lod_pricer_renew(enc_lod_pricer *p, uint32_t v);
+
+/* Starts the memory of v with its faces as they are; after the renewal. */
+void enc_lod_pricer_remember(enc_lod_pricer *p, uint32_t v);
 
 /* The cost of contracting u and v, no more: cheap. With PMESH_PLACE_ENDPOINT,
  * `turn` asks for the worse direction. */

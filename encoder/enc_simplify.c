@@ -36,6 +36,7 @@ pmesh_simplify_options pmesh_simplify_options_default(void)
         .placement = PMESH_PLACE_OPTIMAL,
         .metric = PMESH_MEMORYLESS,
         .cost = PMESH_COST_QUADRIC,
+        .memory = 0.5,
         .boundary = 10,
         .seam = 3,
     };
@@ -223,7 +224,8 @@ static bool in_range(const pmesh_simplify_options *o)
 {
     return o->ratio >= 0 && o->ratio < INFINITY && o->error >= 0 &&
            o->weld >= 0 && o->weld < INFINITY && o->boundary >= 0 &&
-           o->boundary < INFINITY && o->seam >= 0 && o->seam < INFINITY &&
+           o->boundary < INFINITY && o->memory >= 0 &&
+           o->memory < INFINITY && o->seam >= 0 && o->seam < INFINITY &&
            (unsigned)o->placement <= PMESH_PLACE_ENDPOINT &&
            (unsigned)o->cost <= PMESH_COST_CUSTOM &&
            (unsigned)o->metric <= PMESH_ACCUMULATED &&
@@ -262,8 +264,11 @@ static pmesh_status prepare(enc_lod_run *run, const pmesh_allocator *a)
         !run->moved)
         return PMESH_E_MEMORY;
     for (uint32_t v = 0; v < run->lod.vertex_count; v++)
-        if (run->lod.first_corner[v] != ENC_NONE)
+        if (run->lod.first_corner[v] != ENC_NONE) {
             enc_lod_pricer_renew(&run->pricer, v);
+            if (run->pricer.memory)
+                enc_lod_pricer_remember(&run->pricer, v);
+        }
     price_all(run);
     return PMESH_OK;
 }

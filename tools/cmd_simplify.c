@@ -23,7 +23,7 @@ typedef struct options {
     int placement, metric, cost;
     uint32_t faces, vertices;
     double ratio, error; /* negative: not given */
-    double weld, boundary, seam;
+    double weld, memory;
     lod_weights weights;
     bool loose, no_attributes, json, quiet;
 } options;
@@ -64,6 +64,10 @@ static const args_option option_table[] = {
       .value = "memoryless|accumulated", AT(metric),
       .help = "quadrics of the current surface (default) or\n"
               "summed from the original" },
+    { .name = "memory", .kind = ARGS_NUMBER, .value = "W", .min = 0, .max = 1e6,
+      AT(memory),
+      .help = "how much the original counts beside the current\n"
+              "surface (default 0.5); more lowers the largest error" },
     { .name = "normal-weight", .kind = ARGS_NUMBER, .value = "W", .min = 0,
       .max = 1e6, AT(weights.normal),
       .help = "how much a difference of 1 counts against the\n"
@@ -161,6 +165,7 @@ static int configure(const options *o, pmesh_simplify_options *to)
     to->error = o->error > 0 ? o->error : 0;
     to->metric = (pmesh_metric)o->metric;
     to->cost = (pmesh_cost)o->cost;
+    to->memory = o->memory;
     to->weld = o->weld;
     to->loose = o->loose;
     if (o->placement >= 0)
@@ -307,6 +312,7 @@ int cmd_simplify(int argc, char **argv)
                   .placement = -1,
                   .ratio = -1,
                   .error = -1,
+                  .memory = pmesh_simplify_options_default().memory,
                   .weights = { 0.5, 1, 1, 1 } };
     pmesh_simplify_options how;
     asset_format format;
