@@ -48,20 +48,25 @@ static bool has_face(const enc_lod *lod, uint32_t u, uint32_t a, uint32_t b)
     return false;
 }
 
-static uint32_t faces_between(const enc_lod *lod, uint32_t v, uint32_t w)
+/* Faces of v with w; and, of these, those with u. */
+static uint32_t faces_with(const enc_lod *lod, uint32_t v, uint32_t w,
+                           uint32_t u, uint32_t *shared)
 {
     uint32_t c = lod->first_corner[v], count = 0;
 
-    do
-        count += has(lod, c, w);
-    while ((c = lod->corner_next[c]) != lod->first_corner[v]);
+    *shared = 0;
+    do {
+        const bool there = has(lod, c, w);
+        count += there;
+        *shared += there && has(lod, c, u);
+    } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
     return count;
 }
 
 /*
  *       a           If u and v both have a face with a and b, the two would
- *      /|\          become one. And if the edges from wing w to both are on
- *     u-+-v    u-v  a rim, w would be left without a face but at the edge.
+ *      /|\          become one. And if wing w has no face with either but
+ *     u-+-v    u-v  those with both, the edge to it would have none left.
  *      \|/      \|
  *       b        w                                                          */
 static bool wings_survive(const enc_lod *lod, uint32_t u, uint32_t v)
@@ -76,7 +81,9 @@ static bool wings_survive(const enc_lod *lod, uint32_t u, uint32_t v)
 
         if (a == u || b == u) {
             const uint32_t w = a == u ? b : a;
-            if (lod->mark[w].faces == 1 && faces_between(lod, v, w) == 1)
+            uint32_t shared;
+            if (faces_with(lod, v, w, u, &shared) == shared &&
+                lod->mark[w].faces == shared)
                 return false;
         } else if (m && n && m->wing && n->wing && has_face(lod, u, a, b)) {
             return false;

@@ -34,10 +34,10 @@ pmesh_status enc_lod_pricer_create(enc_lod *lod,
                              .passive = channels->passive,
                              .channels = *channels,
                              .value = value };
-    if (options->metric == PMESH_MEMORYLESS) {
+    /* Areas are to weigh as much as their roots on the whole. */
+    if (options->metric == PMESH_MEMORYLESS)
         out->recall = options->memory / sqrt(lod->faces);
-        out->memory = pmesh_alloc(a, n, sizeof *out->memory);
-    }
+    out->memory = pmesh_alloc(a, n, sizeof *out->memory);
     out->quadric = pmesh_alloc(a, n, sizeof *out->quadric);
     out->tail = pmesh_alloc(a, n * tail, sizeof *out->tail);
     out->wedge = pmesh_alloc(a, n, sizeof *out->wedge);
@@ -45,8 +45,7 @@ pmesh_status enc_lod_pricer_create(enc_lod *lod,
     out->choice = pmesh_alloc(a, n, sizeof *out->choice);
     out->stamp = pmesh_alloc_zero(a, n, sizeof *out->stamp);
     out->next = pmesh_alloc(a, n * values, sizeof *out->next);
-    if (!out->value || !out->quadric || !out->tail ||
-        (options->metric == PMESH_MEMORYLESS && !out->memory) || !out->wedge ||
+    if (!out->value || !out->quadric || !out->tail || !out->memory || !out->wedge ||
         !out->fate || !out->choice || !out->stamp || !out->next) {
         enc_lod_pricer_destroy(out);
         return PMESH_E_MEMORY;
@@ -180,7 +179,7 @@ void enc_lod_pricer_remember(enc_lod_pricer *p, uint32_t v)
         const double square = dot(n, n);
         if (square > 0)
             enc_quadric_add_plane(&p->memory[v], n,
-                                  p->recall * sqrt(0.5 * sqrt(square)));
+                                  sqrt(0.5 * sqrt(square)));
     } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
 }
 
@@ -310,17 +309,25 @@ static void sum_memory(const enc_lod_pricer *p, const enc_lod_edge *e,
     const double back[3] = { -e->half[0], -e->half[1], -e->half[2] };
 
     *sum = (enc_quadric){ .c = 0 };
-    if (p->recall > 0) {
-        enc_quadric_add(sum, &p->memory[e->gone], e->half);
-        enc_quadric_add(sum, &p->memory[e->kept], back);
-    }
+    enc_quadric_add(sum, &p->memory[e->gone], e->half);
+    enc_quadric_add(sum, &p->memory[e->kept], back);
 }
 
-/* That and all wedges together, as a quadric of the place alone. */
+static void add_recalled(const enc_lod_pricer *p, const enc_quadric *memory,
+                         enc_quadric *total)
+{
+    for (int i = 0; i < 6; i++)
+        total->a[i] += p->recall * memory->a[i];
+    for (int i = 0; i < 3; i++)
+        total->b[i] += p->recall * memory->b[i];
+    total->c += p->recall * memory->c;
+}
+
+/* All wedges together, as a quadric of the place alone. */
 static void sum_all(const enc_lod_pricer *p, const enc_lod_edge *e,
                     enc_quadric *total)
 {
-    sum_memory(p, e, total);
+    *total = (enc_quadric){ .c = 0 };
     for (uint32_t w = 0; w < p->wedge_count; w++) {
         double tail[ENC_JOINT_TAIL_MAX], center[ENC_JOINT_MAX];
         const double none[3] = { 0, 0, 0 };
@@ -421,43 +428,47 @@ static bool volume_plane(const enc_lod_pricer *p, const enc_lod_edge *e,
 
 /* ---- onto one of the ends ------------------------------------------------ */
 
+/* Which wedge at the other end suits `wedge` best, of those that it belongs to
+ * or of all; infinite if there is none. */
+static double best_choice(enc_lod_pricer *p, uint32_t wedge,
+                          const double way[3], bool any)
+{
+    double best = INFINITY;
+
+    for (uint32_t w = 0; w < p->kept_count; w++) {
+        const uint32_t to = p->wedge[w];
+        double away[ENC_JOINT_MAX];
+        if (!any && p->fate[to] != p->fate[wedge])
+            continue;
+        for (unsigned i = 0; i < p->active; i++)
+            away[i] = value_of(p, to)[i] - value_of(p, wedge)[i];
+        const double value =
+            enc_joint_value(&p->quadric[wedge], tail_of(p, wedge), p->active,
+                            way, away);
+        if (value < best) {
+            best = value;
+            p->choice[wedge] = to;
+        }
+    }
+    return best;
+}
+
 /*
- * The value of letting `gone` go to `kept`, and the fates: a wedge that goes
- * takes on the best of the wedges at `kept` that it belongs to. Infinite if
- * there is none.
+ * The value of letting `gone` go to `kept`, and the choices: a wedge that goes
+ * takes on the best of the wedges at `kept` that it belongs to. Where there is
+ * none it is infinite, or any will do.
  */
-static double onto_kept(enc_lod_pricer *p, const enc_lod_edge *e,
-                        double *weight)
+static double onto_kept(enc_lod_pricer *p, const enc_lod_edge *e)
 {
     const double way[3] = { -2 * e->half[0], -2 * e->half[1], -2 * e->half[2] };
-    const double back[3] = { -e->half[0], -e->half[1], -e->half[2] };
-    enc_quadric memory;
+    double sum = 0;
 
-    sum_memory(p, e, &memory);
-    *weight = memory.weight;
-    double sum = enc_quadric_value(&memory, back);
-    for (uint32_t w = p->wedge_count; w-- > 0;) {
-        const uint32_t wedge = p->wedge[w], group = p->fate[wedge];
-        double best = INFINITY;
-        *weight += p->quadric[wedge].weight;
-        if (w < p->kept_count) {
-            sum += p->quadric[wedge].c;
-            continue;
-        }
-        for (uint32_t k = 0; k < p->kept_count; k++) {
-            const uint32_t to = p->wedge[k];
-            double away[ENC_JOINT_MAX];
-            if (p->fate[to] != group)
-                continue;
-            for (unsigned i = 0; i < p->active; i++)
-                away[i] = value_of(p, to)[i] - value_of(p, wedge)[i];
-            const double value = enc_joint_value(
-                &p->quadric[wedge], tail_of(p, wedge), p->active, way, away);
-            if (value < best) {
-                best = value;
-                p->choice[wedge] = to;
-            }
-        }
+    for (uint32_t w = 0; w < p->kept_count; w++)
+        sum += p->quadric[p->wedge[w]].c;
+    for (uint32_t w = p->kept_count; w < p->wedge_count; w++) {
+        double best = best_choice(p, p->wedge[w], way, false);
+        if (p->break_seams && !(best < INFINITY))
+            best = best_choice(p, p->wedge[w], way, true);
         sum += best;
     }
     return sum;
@@ -492,7 +503,7 @@ static double camera_distance(const enc_lod_pricer *p, const double x[3])
 }
 
 static double ask_hook(const enc_lod_pricer *p, const enc_lod_edge *e,
-                       const double at[3], double value, double weight)
+                       const double at[3], double value, double distance)
 {
     const double extent = p->frame.extent, square = extent * extent;
     double ends[2][3];
@@ -500,7 +511,7 @@ static double ask_hook(const enc_lod_pricer *p, const enc_lod_edge *e,
         .vertices = { e->kept, e->gone },
         .positions = { ends[0], ends[1] },
         .quadric = value * square * square,
-        .distance = weight > 0 ? sqrt(value / weight) * extent : 0,
+        .distance = sqrt(distance) * extent,
     };
 
     to_model(p, p->lod->position[e->kept], ends[0]);
@@ -512,7 +523,7 @@ static double ask_hook(const enc_lod_pricer *p, const enc_lod_edge *e,
 
 /* x: relative to the middle. */
 static double cost_of(const enc_lod_pricer *p, const enc_lod_edge *e,
-                      const double x[3], double value, double weight)
+                      const double x[3], double value, double distance)
 {
     const double square = dot(e->half, e->half), half = sqrt(square);
     const double tie = LENGTH_TIE * 16 * square * square;
@@ -532,25 +543,27 @@ static double cost_of(const enc_lod_pricer *p, const enc_lod_edge *e,
         return (value + tie) / (far * far);
     }
     case PMESH_COST_CUSTOM:
-        return ask_hook(p, e, at, value, weight);
+        return ask_hook(p, e, at, value, distance);
     case PMESH_COST_QUADRIC:
         break;
     }
     return value + tie;
 }
 
-/* The offer of letting `gone` go, with or without what only its winner needs:
- * the place that keeps the volume, and the values. */
+/* The offer of letting `gone` go; with values only if it is to be taken. */
 static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
                                 bool full)
 {
     const enc_lod_edge e = edge_between(p->lod, gone, kept);
     enc_lod_offer offer = { .gone = gone, .kept = kept };
-    double x[3] = { -e.half[0], -e.half[1], -e.half[2] }, weight;
+    double x[3] = { -e.half[0], -e.half[1], -e.half[2] };
+    enc_quadric memory;
 
     gather(p, gone, kept);
+    sum_memory(p, &e, &memory);
     if (p->placement == PMESH_PLACE_ENDPOINT) {
-        offer.quadric = onto_kept(p, &e, &weight);
+        offer.quadric =
+            onto_kept(p, &e) + p->recall * enc_quadric_value(&memory, x);
         memcpy(offer.place, p->lod->position[kept], sizeof offer.place);
         if (full && offer.quadric < INFINITY)
             choose(p);
@@ -558,18 +571,19 @@ static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
         enc_quadric total;
         enc_plane keep;
         sum_all(p, &e, &total);
+        add_recalled(p, &memory, &total);
         const bool held = p->placement == PMESH_PLACE_OPTIMAL &&
                           volume_plane(p, &e, &keep);
         enc_lod_place(p->placement, &total, e.half, held ? &keep : NULL, x);
         offer.quadric = enc_quadric_value(&total, x);
-        weight = total.weight;
         for (int i = 0; i < 3; i++)
             offer.place[i] = e.middle[i] + x[i];
         if (full && stride(p) > 0)
             solve_values(p, &e, x);
     }
-    offer.cost = cost_of(p, &e, x, offer.quadric, weight);
-    offer.distance = weight > 0 ? offer.quadric / weight : 0;
+    if (memory.weight > 0)
+        offer.distance = enc_quadric_value(&memory, x) / memory.weight;
+    offer.cost = cost_of(p, &e, x, offer.quadric, offer.distance);
     return offer;
 }
 
@@ -637,8 +651,7 @@ static void carry_memory(enc_lod_pricer *p, const enc_lod_offer *offer)
 
 void enc_lod_pricer_move(enc_lod_pricer *p, const enc_lod_offer *offer)
 {
-    if (p->recall > 0)
-        carry_memory(p, offer);
+    carry_memory(p, offer);
     for (uint32_t w = 0; w < p->wedge_count; w++) {
         const uint32_t wedge = p->wedge[w];
         double tail[ENC_JOINT_TAIL_MAX];

@@ -40,10 +40,13 @@ typedef struct enc_lod_pricer {
     double *value; /* per wedge */
     enc_quadric *quadric; /* per wedge, about its position and values */
     double *tail;         /* of it; NULL without active values */
-    /* Per vertex: planes of the original's faces, summed, times `recall`. What
-     * is memoryless forgets a limb once it is thin. NULL if accumulated. */
+    /* Per vertex: planes of the original's faces, summed. Beside the quadrics
+     * of the current surface, `recall` times as heavy, they keep thin limbs
+     * from being forgotten; and they tell the distance to the original. */
     enc_quadric *memory;
     double recall;
+    bool break_seams; /* PMESH_PLACE_ENDPOINT: a wedge may go where it does not
+                         belong, on the other side of a seam */
 
     /* The wedges around the last pair; see gather(). */
     uint32_t *wedge; /* list: those of the vertex that stays come first */
@@ -59,8 +62,8 @@ typedef struct enc_lod_offer {
     uint32_t gone, kept;
     double place[3];
     double cost;     /* infinite: impossible */
-    double quadric;  /* area times squared distance */
-    double distance; /* squared */
+    double quadric;  /* of the current surface and attributes, and of memory */
+    double distance; /* squared, to the planes of the original */
 } enc_lod_offer;
 
 /* `value` is taken over, on failure as well. */

@@ -113,16 +113,6 @@ static bool is_legal(enc_lod_run *run, const enc_lod_offer *offer)
              !values_flip(run, offer->kept, offer->gone)));
 }
 
-/* Squared distance from the original. Memoryless quadrics see only the mesh
- * they are made from, so what went before is added. */
-static double total_error(const enc_lod_run *run, const enc_lod_offer *offer)
-{
-    if (run->options->metric == PMESH_ACCUMULATED)
-        return offer->distance;
-    return offer->distance +
-           fmax(run->drift[offer->gone], run->drift[offer->kept]);
-}
-
 static void renew_around(enc_lod_run *run, uint32_t v)
 {
     enc_lod *lod = &run->lod;
@@ -176,10 +166,14 @@ static void try_pair(enc_lod_run *run, uint32_t pair)
     const uint32_t u = run->lod.end_vertex[2 * pair];
     const uint32_t v = run->lod.end_vertex[2 * pair + 1];
     const bool turned = run->turned[pair] & TURNED;
+
+    if (u == ENC_NONE) /* its piece has vanished */
+        return;
     const enc_lod_offer offer =
         enc_lod_pricer_offer(&run->pricer, u, v, turned);
 
-    const double error = total_error(run, &offer);
+    const double error =
+        fmax(offer.distance, fmax(run->drift[u], run->drift[v]));
     if (error > run->error_limit) {
         run->too_far = true;
         return;
@@ -214,6 +208,8 @@ static void contract_all(enc_lod_run *run)
         if (is_done(run) || run->strictness == last)
             return;
         run->strictness++;
+        run->pricer.break_seams =
+            run->channels.active > 0 || run->strictness == ENC_LOD_LOOSE;
         price_all(run);
     }
 }
@@ -266,8 +262,7 @@ static pmesh_status prepare(enc_lod_run *run, const pmesh_allocator *a)
     for (uint32_t v = 0; v < run->lod.vertex_count; v++)
         if (run->lod.first_corner[v] != ENC_NONE) {
             enc_lod_pricer_renew(&run->pricer, v);
-            if (run->pricer.memory)
-                enc_lod_pricer_remember(&run->pricer, v);
+            enc_lod_pricer_remember(&run->pricer, v);
         }
     price_all(run);
     return PMESH_OK;
