@@ -316,3 +316,42 @@ void enc_lod_contract(enc_lod *lod, uint32_t pair, uint32_t gone, uint32_t kept)
     if (lod->first_corner[kept] == ENC_NONE)
         kill_vertex(lod, kept);
 }
+
+/* Two faces that show each other their backs, over the same vertices. */
+static bool backs(const enc_lod *lod, uint32_t c, uint32_t d)
+{
+    return lod->corner_vertex[enc_lod_after(c)] ==
+               lod->corner_vertex[enc_lod_before(d)] &&
+           lod->corner_vertex[enc_lod_before(c)] ==
+               lod->corner_vertex[enc_lod_after(d)];
+}
+
+static bool cancel_one(enc_lod *lod, uint32_t v)
+{
+    const uint32_t first = lod->first_corner[v];
+    uint32_t c = first;
+
+    if (first == ENC_NONE)
+        return false;
+    do {
+        for (uint32_t d = lod->corner_next[c]; d != first;
+             d = lod->corner_next[d]) {
+            if (!backs(lod, c, d))
+                continue;
+            kill_face(lod, c / 3, v, v);
+            kill_face(lod, d / 3, v, v);
+            return true;
+        }
+    } while ((c = lod->corner_next[c]) != first);
+    return false;
+}
+
+void enc_lod_cancel(enc_lod *lod, uint32_t v)
+{
+    if (lod->first_corner[v] == ENC_NONE)
+        return;
+    while (cancel_one(lod, v))
+        ;
+    if (lod->first_corner[v] == ENC_NONE)
+        kill_vertex(lod, v);
+}

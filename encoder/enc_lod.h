@@ -130,4 +130,8 @@ static inline const enc_lod_mark *enc_lod_marked(const enc_lod *lod, uint32_t v)
 void enc_lod_contract(enc_lod *lod, uint32_t pair, uint32_t gone,
                       uint32_t kept);
 
+/* Takes out pairs of faces of v over the same vertices that face opposite
+ * ways: what is left of a volume once it is flat. */
+void enc_lod_cancel(enc_lod *lod, uint32_t v);
+
 #endif

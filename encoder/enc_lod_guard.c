@@ -92,6 +92,21 @@ static bool wings_survive(const enc_lod *lod, uint32_t u, uint32_t v)
     return true;
 }
 
+/* True if there are faces around neither: some will be left, then. */
+static bool has_others(const enc_lod *lod, uint32_t u, uint32_t v)
+{
+    uint32_t c = lod->first_corner[u], count = 0;
+
+    do
+        count += !has(lod, c, v);
+    while ((c = lod->corner_next[c]) != lod->first_corner[u]);
+    c = lod->first_corner[v];
+    do
+        count++;
+    while ((c = lod->corner_next[c]) != lod->first_corner[v]);
+    return lod->faces > count;
+}
+
 bool enc_lod_can_join(enc_lod *lod, uint32_t u, uint32_t v,
                       enc_lod_strictness strictness)
 {
@@ -99,7 +114,7 @@ bool enc_lod_can_join(enc_lod *lod, uint32_t u, uint32_t v,
         strictness == ENC_LOD_SEAMS ? ENC_LOD_RIM | ENC_LOD_SEAM : ENC_LOD_RIM;
 
     if (strictness == ENC_LOD_LOOSE)
-        return true;
+        return has_others(lod, u, v);
     enc_lod_survey(lod, u);
     const enc_lod_mark *edge = enc_lod_marked(lod, v);
     if (!edge)

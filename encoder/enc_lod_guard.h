@@ -10,7 +10,7 @@
 typedef enum enc_lod_strictness {
     ENC_LOD_SEAMS,    /* two lines of seams stay apart */
     ENC_LOD_TOPOLOGY, /* they may touch */
-    ENC_LOD_LOOSE     /* anything goes */
+    ENC_LOD_LOOSE     /* anything goes, but not the last face */
 } enc_lod_strictness;
 
 /*

@@ -540,7 +540,7 @@ static double cost_of(const enc_lod_pricer *p, const enc_lod_edge *e,
                (CAMERA_FACTOR * camera_distance(p, e->middle));
     case PMESH_COST_QUADRIC_CAMERA: {
         const double far = camera_distance(p, at) / p->frame.extent;
-        return (value + tie) / (far * far);
+        return (value + tie) / (far * far * far * far);
     }
     case PMESH_COST_CUSTOM:
         return ask_hook(p, e, at, value, distance);

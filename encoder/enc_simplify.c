@@ -157,6 +157,8 @@ static void contract(enc_lod_run *run, uint32_t pair,
     enc_lod_pricer_move(&run->pricer, offer);
     enc_lod_contract(&run->lod, pair, offer->gone, offer->kept);
     enc_lod_pricer_settle(&run->pricer, offer);
+    if (run->strictness == ENC_LOD_LOOSE)
+        enc_lod_cancel(&run->lod, offer->kept);
     if (run->lod.first_corner[offer->kept] != ENC_NONE)
         renew_around(run, offer->kept);
 }
@@ -207,7 +209,7 @@ static void contract_all(enc_lod_run *run)
             try_pair(run, entry.item);
         if (is_done(run) || run->strictness == last)
             return;
-        run->strictness++;
+        run->strictness = (enc_lod_strictness)(run->strictness + 1);
         run->pricer.break_seams =
             run->channels.active > 0 || run->strictness == ENC_LOD_LOOSE;
         price_all(run);
@@ -338,17 +340,26 @@ static void put_faces(const enc_lod *lod, pmesh_simplify_output *out)
     out->vertex_count = lod->vertices;
 }
 
-static void put_costs(const enc_heap *heap, pmesh_simplify_output *out)
+static void put_costs(const enc_lod_run *run, pmesh_simplify_output *out)
 {
     double sum = 0;
+    size_t count = 0;
 
-    out->cost_least = out->cost_most =
-        heap->count > 0 ? heap->entry[0].cost : 0;
-    for (uint32_t i = 0; i < heap->count; i++) {
-        sum += heap->entry[i].cost;
-        out->cost_most = fmax(out->cost_most, heap->entry[i].cost);
+    out->cost_least = INFINITY;
+    out->cost_most = out->cost_mean = 0;
+    for (uint32_t i = 0; i < run->heap.count; i++) {
+        const enc_heap_entry *e = &run->heap.entry[i];
+        if (run->lod.end_vertex[2 * e->item] == ENC_NONE)
+            continue;
+        sum += e->cost;
+        count++;
+        out->cost_least = fmin(out->cost_least, e->cost);
+        out->cost_most = fmax(out->cost_most, e->cost);
     }
-    out->cost_mean = heap->count > 0 ? sum / heap->count : 0;
+    if (count > 0)
+        out->cost_mean = sum / (double)count;
+    else
+        out->cost_least = 0;
 }
 
 static pmesh_simplify_end reason(const enc_lod_run *run)
@@ -392,7 +403,7 @@ pmesh_status pmesh_simplify_mesh(const pmesh_simplify_input *mesh,
         contract_all(&run);
         put_faces(&run.lod, out);
         put_vertices(&run, mesh, &frame, out);
-        put_costs(&run.heap, out);
+        put_costs(&run, out);
         out->end = reason(&run);
         out->error = sqrt(run.error) * frame.extent;
         out->dropped_faces = mesh->face_count - all;

@@ -77,8 +77,9 @@ typedef enum pmesh_cost {
     PMESH_COST_LENGTH = 1,  /* half the edge, nothing else */
     PMESH_COST_CAMERA = 2,  /* that, by 0.01 of the distance to the camera: what
                                is far goes first, whatever its shape */
-    PMESH_COST_QUADRIC_CAMERA = 3, /* the quadric, by the squared distance to
-                                      the camera: error as it is seen */
+    PMESH_COST_QUADRIC_CAMERA = 3, /* the quadric as the camera sees it: area
+                                      and squared distance both shrink with the
+                                      squared distance to the camera */
     PMESH_COST_CUSTOM = 4   /* the hook's */
 } pmesh_cost;
 
