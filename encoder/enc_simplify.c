@@ -84,8 +84,7 @@ static void price_around(enc_lod_run *run, uint32_t v)
 static bool values_flip(const enc_lod_run *run, uint32_t v, uint32_t other)
 {
     const enc_lod *lod = &run->lod;
-    const enc_lod_pricer *p = &run->pricer;
-    const size_t width = p->active + p->passive;
+    const enc_lod_wedges *ws = &run->pricer.wedges;
     uint32_t c = lod->first_corner[v];
 
     do {
@@ -94,10 +93,10 @@ static bool values_flip(const enc_lod_run *run, uint32_t v, uint32_t other)
             continue;
         for (uint32_t k = 0; k < 3; k++) {
             const uint32_t wedge = lod->corner_wedge[c - c % 3 + k];
-            before[k] = &p->value[wedge * width];
-            after[k] = enc_lod_pricer_next(p, wedge);
+            before[k] = enc_lod_value(ws, wedge);
+            after[k] = enc_lod_next(ws, wedge);
         }
-        if (enc_lod_channels_flip(&run->channels, before, after))
+        if (enc_lod_channels_flip(&ws->channels, before, after))
             return true;
     } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
     return false;
@@ -119,13 +118,13 @@ static void renew_around(enc_lod_run *run, uint32_t v)
     uint32_t end = lod->first_end[v];
 
     if (run->options->metric == PMESH_MEMORYLESS)
-        enc_lod_pricer_renew(&run->pricer, v);
+        enc_lod_renew(&run->pricer.wedges, v);
     else
         enc_lod_survey(lod, v);
     do {
         const uint32_t w = lod->end_vertex[end ^ 1];
         if (run->options->metric == PMESH_MEMORYLESS)
-            enc_lod_pricer_renew(&run->pricer, w);
+            enc_lod_renew(&run->pricer.wedges, w);
         else
             enc_lod_survey(lod, w);
     } while ((end = lod->end_next[end]) != lod->first_end[v]);
@@ -156,7 +155,7 @@ static void contract(enc_lod_run *run, uint32_t pair,
     run->error = fmax(run->error, error);
     enc_lod_pricer_move(&run->pricer, offer);
     enc_lod_contract(&run->lod, pair, offer->gone, offer->kept);
-    enc_lod_pricer_settle(&run->pricer, offer);
+    enc_lod_settle(&run->pricer.wedges, offer->kept);
     if (run->strictness == ENC_LOD_LOOSE)
         enc_lod_cancel(&run->lod, offer->kept);
     if (run->lod.first_corner[offer->kept] != ENC_NONE)
@@ -263,7 +262,7 @@ static pmesh_status prepare(enc_lod_run *run, const pmesh_allocator *a)
         return PMESH_E_MEMORY;
     for (uint32_t v = 0; v < run->lod.vertex_count; v++)
         if (run->lod.first_corner[v] != ENC_NONE) {
-            enc_lod_pricer_renew(&run->pricer, v);
+            enc_lod_renew(&run->pricer.wedges, v);
             enc_lod_pricer_remember(&run->pricer, v);
         }
     price_all(run);
@@ -300,7 +299,6 @@ static void put_vertices(const enc_lod_run *run,
                          const enc_lod_frame *frame, pmesh_simplify_output *out)
 {
     const enc_lod_channels *channels = &run->channels;
-    const size_t width = channels->active + channels->passive;
 
     for (uint32_t c = 0; c < 3 * run->lod.face_count; c++) {
         const uint32_t v = run->lod.corner_vertex[c];
@@ -311,7 +309,8 @@ static void put_vertices(const enc_lod_run *run,
             put_position(run, mesh, frame, v, &out->positions[3 * wedge]);
         for (unsigned i = 0; i < channels->count; i++) {
             const unsigned n = channels->channel[i].components;
-            const double *row = &run->pricer.value[wedge * width];
+            const double *row =
+                enc_lod_value(&run->pricer.wedges, (uint32_t)wedge);
             for (unsigned k = 0; k < n && out->attribute_values[i]; k++)
                 out->attribute_values[i][wedge * n + k] =
                     enc_lod_channels_value(channels, row, i, k);
