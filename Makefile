@@ -168,13 +168,16 @@ bench: bench-all
 ## bench-quality: distance at equal faces, against CGAL and meshoptimizer
 ## bench-decode: time to decode, against Draco
 ## bench-lossless: cost of exact positions
+## bench-attributes: attributes of simplified meshes, against meshoptimizer
 ## bench-time: time and memory of the commands
-bench_programs := $(addprefix $(B)/bench_,decode qem simplify)
+bench_programs := $(addprefix $(B)/bench_,attributes decode qem simplify)
 bench-%: bench-deps
 	+@$(submake) all $(bench_programs)
 	@PMESH=$(B)/pmesh tests/bench/$*.sh
 $(bench_programs): $(B)/bench_%: $(B)/tests/bench/bench_%.o
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bench_libs) -o $@
+$(B)/bench_attributes: $(shared_obj) $(B)/libpmesh.a
+$(B)/bench_attributes: bench_libs := $(bridge_libs)
 $(B)/bench_decode: $(B)/libpmesh-dec.a
 $(B)/bench_decode: bench_libs := -ldraco
 $(B)/bench_simplify: bench_libs := -lmeshoptimizer -lgmp -lmpfr

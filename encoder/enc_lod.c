@@ -5,6 +5,9 @@
 
 #include "format/alloc.h"
 
+/* A vertex with more seams is faceted, not on a line. */
+enum { MAX_SEAMS = 4 };
+
 /* ---- rings of links ------------------------------------------------------ */
 
 static void link(uint32_t *first, uint32_t *next, uint32_t item)
@@ -186,8 +189,8 @@ static void touch(enc_lod *lod, uint32_t near, uint32_t far)
 void enc_lod_survey(enc_lod *lod, uint32_t v)
 {
     const uint32_t first = lod->first_corner[v];
-    uint32_t c = first, lone = lod->corner_wedge[c];
-    uint8_t lines = 0;
+    uint32_t c = first, lone = lod->corner_wedge[c], seams = 0;
+    bool rim = false;
 
     if (++lod->stamp == 0) {
         memset(lod->mark, 0, lod->vertex_count * sizeof *lod->mark);
@@ -204,12 +207,12 @@ void enc_lod_survey(enc_lod *lod, uint32_t v)
             &lod->mark[lod->corner_vertex[enc_lod_after(c)]];
         const enc_lod_mark *n =
             &lod->mark[lod->corner_vertex[enc_lod_before(c)]];
-        if (m->faces != 2 || n->faces != 2)
-            lines |= ENC_LOD_RIM;
-        if (m->breaks || n->breaks)
-            lines |= ENC_LOD_SEAM;
+        rim |= m->faces != 2 || n->faces != 2;
+        seams += m->breaks + n->breaks;
     } while ((c = lod->corner_next[c]) != first);
-    lod->lines[v] = lines;
+    lod->lines[v] = (uint8_t)((rim ? ENC_LOD_RIM : 0) |
+                              (seams > 0 && seams <= 2 * MAX_SEAMS
+                                   ? ENC_LOD_SEAM : 0));
     lod->lone[v] = lone;
 }
 

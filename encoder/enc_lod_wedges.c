@@ -94,9 +94,11 @@ static void hold_edge(const enc_lod_wedges *ws, uint32_t c, uint32_t far)
 {
     const enc_lod *lod = ws->lod;
     const enc_lod_mark *m = &lod->mark[lod->corner_vertex[far]];
-    const double weight = m->faces == 1                 ? ws->boundary
-                          : m->breaks || m->faces != 2 ? ws->seam
-                                                        : 0;
+    const bool seam =
+        m->breaks && (lod->lines[lod->corner_vertex[c]] & ENC_LOD_SEAM);
+    const double weight = m->faces == 1             ? ws->boundary
+                          : seam || m->faces != 2 ? ws->seam
+                                                    : 0;
     const double *from = lod->position[lod->corner_vertex[c]];
     double along[3], n[3];
 

@@ -313,7 +313,7 @@ int cmd_simplify(int argc, char **argv)
                   .ratio = -1,
                   .error = -1,
                   .memory = pmesh_simplify_options_default().memory,
-                  .weights = { 0.5, 1, 1, 1 } };
+                  .weights = { 0.01, 0.1, 0.03, 0.03 } };
     pmesh_simplify_options how;
     asset_format format;
     int count;
