@@ -192,7 +192,8 @@ bench-deps:
 cross-deps:
 	@tests/install-deps.sh cross
 
-headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h
+headers := format/pmesh.h encoder/pmesh_encode.h encoder/pmesh_simplify.h \
+  decoder/pmesh_decode.h
 lib := $(DESTDIR)$(LIBDIR)
 include := $(DESTDIR)$(PREFIX)/include
 bin := $(DESTDIR)$(PREFIX)/bin

@@ -17,8 +17,8 @@ typedef enum enc_lod_strictness {
  * True if contracting u and v keeps the topology: they have no common
  * neighbours but the wings, the outer vertices of the faces between them; no
  * two faces come to lie over the same vertices; and the ends are not on two
- * different lines (Dey, Edelsbrunner, Guha, Nekhayev 1999: the link condition,
- * for any 2-complex).
+ * different lines (the link condition of Dey, Edelsbrunner, Guha and Nekhayev,
+ * Topology Preserving Edge Contraction, 1999).
  */
 bool enc_lod_can_join(enc_lod *lod, uint32_t u, uint32_t v,
                       enc_lod_strictness strictness);

@@ -11,6 +11,8 @@ echo "== distance at equal face counts: strict quadric order"
 tests/bench/lod.sh
 echo "== distance at equal face counts: other programs"
 tests/bench/quality.sh
+echo "== attributes of simplified meshes"
+tests/bench/attributes.sh
 echo "== cost of exact positions"
 tests/bench/lossless.sh
 echo "== time to decode"
