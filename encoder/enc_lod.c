@@ -210,9 +210,9 @@ void enc_lod_survey(enc_lod *lod, uint32_t v)
         rim |= m->faces != 2 || n->faces != 2;
         seams += m->breaks + n->breaks;
     } while ((c = lod->corner_next[c]) != first);
-    lod->lines[v] = (uint8_t)((rim ? ENC_LOD_RIM : 0) |
-                              (seams > 0 && seams <= 2 * MAX_SEAMS
-                                   ? ENC_LOD_SEAM : 0));
+    lod->lines[v] =
+        (uint8_t)((rim ? ENC_LOD_RIM : 0) |
+                  (seams > 0 && seams <= 2 * MAX_SEAMS ? ENC_LOD_SEAM : 0));
     lod->lone[v] = lone;
 }
 

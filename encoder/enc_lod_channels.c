@@ -39,8 +39,7 @@ pmesh_status enc_lod_channels_plan(const pmesh_simplify_input *in,
 
 static double load(const pmesh_simplify_attribute *a, size_t vertex, unsigned k)
 {
-    const size_t stride =
-        a->stride ? a->stride : a->components * sizeof(float);
+    const size_t stride = a->stride ? a->stride : a->components * sizeof(float);
     float value;
 
     memcpy(&value,

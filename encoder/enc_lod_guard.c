@@ -119,8 +119,8 @@ bool enc_lod_can_join(enc_lod *lod, uint32_t u, uint32_t v,
     const enc_lod_mark *edge = enc_lod_marked(lod, v);
     if (!edge)
         return false;
-    const bool along = edge->faces != 2 ||
-                       (strictness == ENC_LOD_SEAMS && edge->breaks);
+    const bool along =
+        edge->faces != 2 || (strictness == ENC_LOD_SEAMS && edge->breaks);
     if ((lod->lines[u] & lines) && (lod->lines[v] & lines) && !along)
         return false;
     mark_wings(lod, u, v);

@@ -46,8 +46,8 @@ static void sum_group(const enc_lod_wedges *ws, const enc_lod_edge *e,
             continue;
         for (unsigned i = 0; i < ws->active; i++)
             away[i] = enc_lod_value(ws, wedge)[i] - center[i];
-        enc_joint_add(q, tail, &ws->quadric[wedge], enc_lod_tail(ws, wedge), ws->active,
-                      w < ws->kept_count ? back : e->half, away);
+        enc_joint_add(q, tail, &ws->quadric[wedge], enc_lod_tail(ws, wedge),
+                      ws->active, w < ws->kept_count ? back : e->half, away);
     }
 }
 
@@ -142,8 +142,8 @@ static double best_choice(enc_lod_wedges *ws, uint32_t wedge,
         for (unsigned i = 0; i < ws->active; i++)
             away[i] = enc_lod_value(ws, to)[i] - enc_lod_value(ws, wedge)[i];
         const double value =
-            enc_joint_value(&ws->quadric[wedge], enc_lod_tail(ws, wedge), ws->active,
-                            way, away);
+            enc_joint_value(&ws->quadric[wedge], enc_lod_tail(ws, wedge),
+                            ws->active, way, away);
         if (value < best) {
             best = value;
             ws->choice[wedge] = to;
@@ -199,8 +199,8 @@ static void carry_over(const enc_lod_wedges *ws, uint32_t gone, uint32_t kept,
         difference(ws->lod->position[v], place, way);
         for (unsigned i = 0; i < ws->active; i++)
             away[i] = enc_lod_value(ws, wedge)[i] - to[i];
-        enc_joint_add(q, tail, &ws->quadric[wedge], enc_lod_tail(ws, wedge), ws->active,
-                      way, away);
+        enc_joint_add(q, tail, &ws->quadric[wedge], enc_lod_tail(ws, wedge),
+                      ws->active, way, away);
     }
 }
 

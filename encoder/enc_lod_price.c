@@ -21,16 +21,14 @@ pmesh_status enc_lod_pricer_create(enc_lod *lod,
                                    const enc_lod_channels *channels,
                                    double *value, enc_lod_pricer *out)
 {
-    *out = (enc_lod_pricer){ .lod = lod,
-                             .options = options,
-                             .frame = *frame,
-                             .placement = placement };
+    *out = (enc_lod_pricer){
+        .lod = lod, .options = options, .frame = *frame, .placement = placement
+    };
     /* Areas are to weigh as much as their roots on the whole. */
     if (options->metric == PMESH_MEMORYLESS)
         out->recall = options->memory / sqrt(lod->faces);
-    pmesh_status status =
-        enc_lod_wedges_create(lod, channels, options->boundary, options->seam,
-                              value, &out->wedges);
+    pmesh_status status = enc_lod_wedges_create(
+        lod, channels, options->boundary, options->seam, value, &out->wedges);
     if (status != PMESH_OK)
         return status;
     out->memory =
@@ -87,8 +85,7 @@ void enc_lod_pricer_remember(enc_lod_pricer *p, uint32_t v)
         enc_lod_normal(lod, c, lod->position[v], n);
         const double square = dot(n, n);
         if (square > 0)
-            enc_quadric_add_plane(&p->memory[v], n,
-                                  sqrt(0.5 * sqrt(square)));
+            enc_quadric_add_plane(&p->memory[v], n, sqrt(0.5 * sqrt(square)));
     } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
 }
 
@@ -229,9 +226,8 @@ static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
     enc_lod_gather(&p->wedges, gone, kept);
     sum_memory(p, &e, &memory);
     if (p->placement == PMESH_PLACE_ENDPOINT) {
-        offer.quadric =
-            enc_lod_onto_kept(&p->wedges, &e, p->break_seams) +
-            p->recall * enc_quadric_value(&memory, x);
+        offer.quadric = enc_lod_onto_kept(&p->wedges, &e, p->break_seams) +
+                        p->recall * enc_quadric_value(&memory, x);
         memcpy(offer.place, p->lod->position[kept], sizeof offer.place);
         if (full && offer.quadric < INFINITY)
             enc_lod_choose(&p->wedges);
@@ -240,8 +236,8 @@ static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
         enc_plane keep;
         enc_lod_sum(&p->wedges, &e, &total);
         add_recalled(p, &memory, &total);
-        const bool held = p->placement == PMESH_PLACE_OPTIMAL &&
-                          volume_plane(p, &e, &keep);
+        const bool held =
+            p->placement == PMESH_PLACE_OPTIMAL && volume_plane(p, &e, &keep);
         enc_lod_place(p->placement, &total, e.half, held ? &keep : NULL, x);
         offer.quadric = enc_quadric_value(&total, x);
         for (int i = 0; i < 3; i++)

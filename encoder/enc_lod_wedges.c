@@ -96,9 +96,9 @@ static void hold_edge(const enc_lod_wedges *ws, uint32_t c, uint32_t far)
     const enc_lod_mark *m = &lod->mark[lod->corner_vertex[far]];
     const bool seam =
         m->breaks && (lod->lines[lod->corner_vertex[c]] & ENC_LOD_SEAM);
-    const double weight = m->faces == 1             ? ws->boundary
+    const double weight = m->faces == 1           ? ws->boundary
                           : seam || m->faces != 2 ? ws->seam
-                                                    : 0;
+                                                  : 0;
     const double *from = lod->position[lod->corner_vertex[c]];
     double along[3], n[3];
 
@@ -197,4 +197,3 @@ void enc_lod_gather(enc_lod_wedges *ws, uint32_t gone, uint32_t kept)
     for (uint32_t i = 0; i < ws->count; i++)
         ws->fate[ws->list[i]] = find(ws, ws->list[i]);
 }
-

@@ -27,7 +27,7 @@ typedef struct enc_lod_run {
     uint32_t tick;
     uint32_t face_target, vertex_target;
     double error_limit, error; /* squared, in the frame */
-    bool too_far; /* some contraction was refused for the limit */
+    bool too_far;              /* some contraction was refused for the limit */
 } enc_lod_run;
 
 pmesh_simplify_options pmesh_simplify_options_default(void)
@@ -221,8 +221,8 @@ static bool in_range(const pmesh_simplify_options *o)
 {
     return o->ratio >= 0 && o->ratio < INFINITY && o->error >= 0 &&
            o->weld >= 0 && o->weld < INFINITY && o->boundary >= 0 &&
-           o->boundary < INFINITY && o->memory >= 0 &&
-           o->memory < INFINITY && o->seam >= 0 && o->seam < INFINITY &&
+           o->boundary < INFINITY && o->memory >= 0 && o->memory < INFINITY &&
+           o->seam >= 0 && o->seam < INFINITY &&
            (unsigned)o->placement <= PMESH_PLACE_ENDPOINT &&
            (unsigned)o->cost <= PMESH_COST_CUSTOM &&
            (unsigned)o->metric <= PMESH_ACCUMULATED &&
@@ -252,10 +252,8 @@ static pmesh_status prepare(enc_lod_run *run, const pmesh_allocator *a)
         enc_heap_create(a, run->lod.pair_count, &run->heap);
 
     run->turned = pmesh_alloc_zero(a, run->lod.pair_count, 1);
-    run->priced =
-        pmesh_alloc_zero(a, run->lod.pair_count, sizeof *run->priced);
-    run->drift =
-        pmesh_alloc_zero(a, run->lod.vertex_count, sizeof *run->drift);
+    run->priced = pmesh_alloc_zero(a, run->lod.pair_count, sizeof *run->priced);
+    run->drift = pmesh_alloc_zero(a, run->lod.vertex_count, sizeof *run->drift);
     run->moved = pmesh_alloc_zero(a, run->lod.vertex_count, 1);
     if (status != PMESH_OK || !run->turned || !run->priced || !run->drift ||
         !run->moved)
@@ -385,17 +383,17 @@ pmesh_status pmesh_simplify_mesh(const pmesh_simplify_input *mesh,
     for (size_t i = 0; i < mesh->attribute_count && i < PMESH_MAX_ATTRIBUTES;
          i++)
         moving = moving && out->attribute_values[i];
-    pmesh_status status = enc_lod_import(&a, mesh, options->weld, !moving,
-                                         &run.channels, &frame, &run.lod,
-                                         &value);
+    pmesh_status status =
+        enc_lod_import(&a, mesh, options->weld, !moving, &run.channels, &frame,
+                       &run.lod, &value);
     if (status != PMESH_OK)
         return status;
     const size_t all = run.lod.faces;
     set_targets(&run, all, frame.extent);
-    status = enc_lod_pricer_create(
-        &run.lod, options, &frame,
-        moving ? options->placement : PMESH_PLACE_ENDPOINT, &run.channels,
-        value, &run.pricer);
+    status = enc_lod_pricer_create(&run.lod, options, &frame,
+                                   moving ? options->placement
+                                          : PMESH_PLACE_ENDPOINT,
+                                   &run.channels, value, &run.pricer);
     if (status == PMESH_OK)
         status = prepare(&run, &a);
     if (status == PMESH_OK) {

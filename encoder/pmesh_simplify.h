@@ -199,9 +199,10 @@ typedef struct pmesh_simplify_output {
  * (no face has finite positions). On failure the contents of the buffers are
  * undefined.
  */
-PMESH_API pmesh_status pmesh_simplify_mesh(const pmesh_simplify_input *mesh,
-                                           const pmesh_simplify_options *options,
-                                           pmesh_simplify_output *out);
+PMESH_API pmesh_status
+pmesh_simplify_mesh(const pmesh_simplify_input *mesh,
+                    const pmesh_simplify_options *options,
+                    pmesh_simplify_output *out);
 
 #ifdef __cplusplus
 }

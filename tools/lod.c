@@ -19,14 +19,10 @@ typedef struct lod_job {
 static float weight_of(const lod_weights *weights, pmesh_attribute_kind kind)
 {
     switch (kind) {
-    case PMESH_NORMAL:
-        return (float)weights->normal;
-    case PMESH_TEXCOORD:
-        return (float)weights->texcoord;
-    case PMESH_COLOR:
-        return (float)weights->color;
-    default:
-        return (float)weights->generic;
+    case PMESH_NORMAL: return (float)weights->normal;
+    case PMESH_TEXCOORD: return (float)weights->texcoord;
+    case PMESH_COLOR: return (float)weights->color;
+    default: return (float)weights->generic;
     }
 }
 
@@ -78,8 +74,8 @@ static bool make_room(lod_job *job)
     bool good = out->indices && out->position_indices && out->face_source &&
                 out->positions;
     for (size_t i = 0; i < job->in->attribute_count; i++) {
-        out->attribute_values[i] = malloc(
-            points * job->in->attributes[i].components * sizeof(float));
+        out->attribute_values[i] =
+            malloc(points * job->in->attributes[i].components * sizeof(float));
         good = good && out->attribute_values[i];
     }
     return good;
@@ -213,8 +209,7 @@ static bool take_materials(const lod_job *job, asset *out)
 
     out->material_count = in->material_count;
     if (in->materials) {
-        out->materials =
-            malloc((out->face_count + 1) * sizeof *out->materials);
+        out->materials = malloc((out->face_count + 1) * sizeof *out->materials);
         if (!out->materials)
             return false;
         for (size_t f = 0; f < out->face_count; f++)

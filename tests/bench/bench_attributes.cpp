@@ -49,7 +49,8 @@ extern "C" {
 #include "tools/surface.h"
 }
 
-namespace {
+namespace
+{
 
 constexpr std::size_t samples = 100000;
 constexpr int picture = 384; /* pixels */
@@ -83,8 +84,14 @@ struct Mesh {
     std::vector<float> rows;
     std::vector<std::uint32_t> tri;
 
-    std::size_t faces() const { return tri.size() / 3; }
-    std::size_t points() const { return xyz.size() / 3; }
+    std::size_t faces() const
+    {
+        return tri.size() / 3;
+    }
+    std::size_t points() const
+    {
+        return xyz.size() / 3;
+    }
     void add(pmesh_attribute_kind kind, std::size_t components)
     {
         channels.push_back({ kind, components, width });
@@ -166,7 +173,9 @@ Mesh ours(const Mesh &in, std::size_t target, bool joint, bool subset)
         attributes.push_back(
             { in.channels[i].kind,
               static_cast<std::uint8_t>(in.channels[i].components),
-              own[i].data(), 0, { weight, weight, weight, weight } });
+              own[i].data(),
+              0,
+              { weight, weight, weight, weight } });
         to.attribute_values[i] = own[i].data();
     }
     const std::vector<std::vector<float>> before = own;
@@ -227,15 +236,14 @@ Mesh meshopt(const Mesh &in, std::size_t target, const std::string &dir,
     std::string list;
     for (const Channel &c : in.channels)
         for (std::size_t k = 0; k < c.components; k++)
-            list += (list.empty() ? "" : ",") +
-                    std::to_string(weight_of(c.kind));
+            list +=
+                (list.empty() ? "" : ",") + std::to_string(weight_of(c.kind));
     dump(dir + "/indices", in.tri);
     dump(dir + "/positions", std::vector<float>(in.xyz.begin(), in.xyz.end()));
     dump(dir + "/attributes", in.rows);
-    const std::string command = "node tests/bench/attributes.mjs \"" + dir +
-                                "\" " + list + " " +
-                                std::to_string(3 * target) +
-                                (update ? " update" : "");
+    const std::string command =
+        "node tests/bench/attributes.mjs \"" + dir + "\" " + list + " " +
+        std::to_string(3 * target) + (update ? " update" : "");
     if (std::system(command.c_str()) != 0)
         throw std::runtime_error("node failed");
     Mesh out = in;
@@ -317,7 +325,10 @@ struct Searchable {
         if (!surface_build(&tree, &a, &frame))
             throw std::bad_alloc();
     }
-    ~Searchable() { surface_free(&tree); }
+    ~Searchable()
+    {
+        surface_free(&tree);
+    }
     static asset as_asset(const Mesh &m)
     {
         asset a = {};
@@ -340,9 +351,8 @@ std::vector<double> blend(const Mesh &mesh, const std::uint32_t corner[3],
     std::vector<double> row(mesh.width, 0.0);
     for (std::size_t k = 0; k < 3; k++)
         for (std::size_t i = 0; i < mesh.width; i++)
-            row[i] += weight[k] *
-                      static_cast<double>(
-                          mesh.rows[corner[k] * mesh.width + i]);
+            row[i] += weight[k] * static_cast<double>(
+                                      mesh.rows[corner[k] * mesh.width + i]);
     return row;
 }
 
@@ -386,8 +396,8 @@ void one_way(const Searchable &from, const Searchable &to, Sums *sums)
     for (std::size_t f = 0; f < faces; f++) {
         const std::uint32_t *c = corner(from, f);
         const Vec a = from.local(c[0]);
-        const Vec n = cross(minus(from.local(c[1]), a),
-                            minus(from.local(c[2]), a));
+        const Vec n =
+            cross(minus(from.local(c[1]), a), minus(from.local(c[2]), a));
         total += std::sqrt(dot(n, n));
         area.push_back(total);
     }
@@ -407,8 +417,8 @@ void one_way(const Searchable &from, const Searchable &to, Sums *sums)
                 p[j] += weight[k] * from.local(c[k])[j];
         sums->distance += surface_closest(&to.tree, p.data(), &hint);
         const std::uint32_t *d = corner(to, hint);
-        const Vec other = closest(p, to.local(d[0]), to.local(d[1]),
-                                  to.local(d[2]));
+        const Vec other =
+            closest(p, to.local(d[0]), to.local(d[1]), to.local(d[2]));
         compare_rows(from.mesh, blend(from.mesh, c, weight),
                      blend(to.mesh, d, other), sums);
         sums->count++;
@@ -428,7 +438,8 @@ double uv_area(const Mesh &mesh, const std::uint32_t corner[3])
     const Channel *c = find(mesh, PMESH_TEXCOORD);
     double x[3], y[3];
     for (int k = 0; k < 3; k++) {
-        x[k] = static_cast<double>(mesh.rows[corner[k] * mesh.width + c->offset]);
+        x[k] =
+            static_cast<double>(mesh.rows[corner[k] * mesh.width + c->offset]);
         y[k] = static_cast<double>(
             mesh.rows[corner[k] * mesh.width + c->offset + 1]);
     }
@@ -521,7 +532,8 @@ Image draw(const Searchable &s, std::size_t axis, double sign)
         if (!(std::fabs(area) > 0))
             continue;
         auto low = [](const double v[3]) {
-            return std::max(0, static_cast<int>(std::min({ v[0], v[1], v[2] })));
+            return std::max(0,
+                            static_cast<int>(std::min({ v[0], v[1], v[2] })));
         };
         auto high = [](const double v[3]) {
             return std::min(picture - 1,
@@ -580,8 +592,8 @@ double uv_extent(const Mesh &mesh)
     for (std::size_t k = 0; c && k < 2; k++) {
         double low = HUGE_VAL, high = -HUGE_VAL;
         for (std::size_t p = 0; p < mesh.points(); p++) {
-            const double v = static_cast<double>(
-                mesh.rows[p * mesh.width + c->offset + k]);
+            const double v =
+                static_cast<double>(mesh.rows[p * mesh.width + c->offset + k]);
             low = std::min(low, v);
             high = std::max(high, v);
         }

@@ -257,8 +257,10 @@ double lods_sphere_rms(const lods *l)
         double m[3] = { 0, 0, 0 };
         for (size_t k = 0; k < 3; k++)
             for (size_t i = 0; i < 3; i++)
-                m[i] += l->out.positions[3 * (size_t)l->out.indices[3 * f + k] +
-                                         i] / 3;
+                m[i] +=
+                    l->out
+                        .positions[3 * (size_t)l->out.indices[3 * f + k] + i] /
+                    3;
         const double r = sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]) - 1;
         sum += r * r;
     }

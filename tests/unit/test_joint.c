@@ -207,8 +207,8 @@ TEST(placement_never_costs_more_than_the_ends_and_the_middle)
                  fmin(enc_quadric_value(&q, half), enc_quadric_value(&q, end)));
         for (int rule = PMESH_PLACE_OPTIMAL; rule <= PMESH_PLACE_ENDPOINT;
              rule++) {
-            enc_lod_place((pmesh_place)rule, &q, half,
-                          trial % 2 ? &keep : NULL, x);
+            enc_lod_place((pmesh_place)rule, &q, half, trial % 2 ? &keep : NULL,
+                          x);
             CHECK(isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]));
             if (rule == PMESH_PLACE_MIDPOINT)
                 CHECK(x[0] == 0 && x[1] == 0 && x[2] == 0);
@@ -220,7 +220,9 @@ TEST(placement_never_costs_more_than_the_ends_and_the_middle)
 
 TEST(placement_finds_where_planes_meet)
 {
-    static const double normals[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 1, 1 } };
+    static const double normals[3][3] = { { 1, 0, 0 },
+                                          { 0, 1, 0 },
+                                          { 0, 1, 1 } };
     const double half[3] = { 0.5, 0, 0 }, corner[3] = { 0.2, 0.3, -0.4 };
     enc_quadric q = { .c = 0 }, sum = { .c = 0 };
     double x[3];

@@ -413,9 +413,9 @@ static double far_by_near(const lods *l)
         const double *p = &l->out.positions[3 * (size_t)l->out.indices[c]];
         const double *q = &l->out.positions[3 * (size_t)l->out.indices[next]];
         const int half = p[2] + q[2] > 0;
-        sum[half] += sqrt((p[0] - q[0]) * (p[0] - q[0]) +
-                          (p[1] - q[1]) * (p[1] - q[1]) +
-                          (p[2] - q[2]) * (p[2] - q[2]));
+        sum[half] +=
+            sqrt((p[0] - q[0]) * (p[0] - q[0]) + (p[1] - q[1]) * (p[1] - q[1]) +
+                 (p[2] - q[2]) * (p[2] - q[2]));
         count[half]++;
     }
     return (sum[1] / (double)count[1]) / (sum[0] / (double)count[0]);

@@ -25,8 +25,7 @@ static void color_at(const double p[3], float out[])
 static void normal_at(const double p[3], float out[])
 {
     const double slope[2] = { 0.8 * cos(0.6 * p[0]), 0.8 * sin(0.5 * p[1]) };
-    const double length =
-        sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
+    const double length = sqrt(1 + slope[0] * slope[0] + slope[1] * slope[1]);
 
     out[0] = (float)(-slope[0] / length);
     out[1] = (float)(-slope[1] / length);
@@ -44,8 +43,7 @@ typedef void (*field)(const double p[3], float out[]);
 static void add_field(lods *l, pmesh_attribute_kind kind, uint8_t components,
                       field f, float weight)
 {
-    float *values =
-        malloc(l->in.vertex_count * components * sizeof *values);
+    float *values = malloc(l->in.vertex_count * components * sizeof *values);
 
     for (size_t v = 0; v < l->in.vertex_count; v++)
         f(&l->xyz[3 * v], values + v * components);
@@ -189,7 +187,8 @@ TEST(attributes_are_made_for_the_new_place_rather_than_copied)
         lods *l = lods_terrain(SIZE);
         add_field(l, PMESH_COLOR, 3, color_at, 0.03f);
         l->options.faces = 200;
-        l->options.placement = copy ? PMESH_PLACE_ENDPOINT : PMESH_PLACE_OPTIMAL;
+        l->options.placement =
+            copy ? PMESH_PLACE_ENDPOINT : PMESH_PLACE_OPTIMAL;
         CHECK(lods_run(l) == PMESH_OK);
         error[copy] = attribute_error(l, 0, 1, color_at);
         lods_free(l);
@@ -283,8 +282,7 @@ TEST(seams_do_not_crack_nor_turn_texture_over)
                 const uint32_t *t = &l->out.indices[3 * f];
                 const float *uv = l->out.attribute_values[0];
                 const uint32_t *from = &l->tri[3 * l->out.face_source[f]];
-                const double before =
-                    uv_area(l->attributes[0].values, from);
+                const double before = uv_area(l->attributes[0].values, from);
                 CHECK(before * uv_area(uv, t) > 0);
                 /* Corners of both sides in one face would span the sheet. */
                 for (size_t k = 0; k < 3; k++) {
