@@ -123,24 +123,38 @@ static void pair_up(enc_lod *lod, uint32_t v, uint32_t *count)
     } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
 }
 
-static pmesh_status add_pairs(enc_lod *lod)
+static uint32_t pair_up_all(enc_lod *lod)
 {
-    const pmesh_allocator *a = &lod->allocator;
     uint32_t count = 0;
 
     for (uint32_t v = 0; v < lod->vertex_count; v++)
         if (lod->first_corner[v] != ENC_NONE)
             pair_up(lod, v, &count);
-    lod->pair_count = count;
-    lod->end_vertex =
-        pmesh_alloc(a, 2 * (size_t)count, sizeof *lod->end_vertex);
-    lod->end_next = pmesh_alloc(a, 2 * (size_t)count, sizeof *lod->end_next);
+    return count;
+}
+
+pmesh_status enc_lod_add_pairs(enc_lod *lod, const uint32_t (*more)[2],
+                               uint32_t more_count)
+{
+    const pmesh_allocator *a = &lod->allocator;
+    const uint32_t edges = pair_up_all(lod); /* counts */
+    const size_t ends = 2 * ((size_t)edges + more_count);
+
+    if (more_count > UINT32_MAX / 2 - 1 - edges)
+        return PMESH_E_LIMIT;
+    lod->pair_count = edges + more_count;
+    lod->end_vertex = pmesh_alloc(a, ends, sizeof *lod->end_vertex);
+    lod->end_next = pmesh_alloc(a, ends, sizeof *lod->end_next);
     if (!lod->end_vertex || !lod->end_next)
         return PMESH_E_MEMORY;
-    count = 0;
-    for (uint32_t v = 0; v < lod->vertex_count; v++)
-        if (lod->first_corner[v] != ENC_NONE)
-            pair_up(lod, v, &count);
+    pair_up_all(lod);
+    for (uint32_t i = 0; i < more_count; i++) {
+        for (uint32_t k = 0; k < 2; k++) {
+            const uint32_t end = 2 * (edges + i) + k;
+            lod->end_vertex[end] = more[i][k];
+            link(&lod->first_end[more[i][k]], lod->end_next, end);
+        }
+    }
     return PMESH_OK;
 }
 
@@ -148,23 +162,22 @@ pmesh_status enc_lod_create(const pmesh_allocator *allocator,
                             const uint32_t *indices, uint32_t face_count,
                             const uint32_t *material, uint32_t vertex_count,
                             const uint32_t *root, const uint32_t *wedge,
-                            enc_lod *out)
+                            const double (*position)[3], enc_lod *out)
 {
     *out = (enc_lod){ .allocator = *allocator,
                       .vertex_count = vertex_count,
                       .face_count = face_count,
                       .material = material };
-    pmesh_status status = allocate(out);
-    if (status == PMESH_OK) {
-        memset(out->first_corner, 0xff,
-               vertex_count * sizeof *out->first_corner);
-        memset(out->first_end, 0xff, vertex_count * sizeof *out->first_end);
-        add_faces(out, indices, root, wedge);
-        status = add_pairs(out);
-    }
-    if (status != PMESH_OK)
+    const pmesh_status status = allocate(out);
+    if (status != PMESH_OK) {
         enc_lod_destroy(out);
-    return status;
+        return status;
+    }
+    memset(out->first_corner, 0xff, vertex_count * sizeof *out->first_corner);
+    memset(out->first_end, 0xff, vertex_count * sizeof *out->first_end);
+    memcpy(out->position, position, vertex_count * sizeof *position);
+    add_faces(out, indices, root, wedge);
+    return PMESH_OK;
 }
 
 /* ---- survey -------------------------------------------------------------- */

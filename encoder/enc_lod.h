@@ -60,15 +60,20 @@ typedef struct enc_lod {
 } enc_lod;
 
 /*
- * Takes ownership of nothing. `root` names the least vertex at the position of
- * each; `wedge` the input vertex whose attributes count, in place of each.
- * Faces with corner_vertex ENC_NONE or with two equal roots are left out.
+ * Takes ownership of nothing, and makes no pairs. `root` names the least vertex
+ * at the position of each; `wedge` the input vertex whose attributes count, in
+ * place of each. Faces with a root ENC_NONE or two equal ones are left out.
  */
 pmesh_status enc_lod_create(const pmesh_allocator *allocator,
                             const uint32_t *indices, uint32_t face_count,
                             const uint32_t *material, uint32_t vertex_count,
                             const uint32_t *root, const uint32_t *wedge,
-                            enc_lod *out);
+                            const double (*position)[3], enc_lod *out);
+
+/* Makes pairs of the edges, and `more`, which are no edges. On failure the
+ * mesh is still to be destroyed. */
+pmesh_status enc_lod_add_pairs(enc_lod *lod, const uint32_t (*more)[2],
+                               uint32_t more_count);
 void enc_lod_destroy(enc_lod *lod);
 
 static inline uint32_t enc_lod_after(uint32_t corner)

@@ -24,14 +24,26 @@ static void mark_wings(enc_lod *lod, uint32_t u, uint32_t v)
     } while ((c = lod->corner_next[c]) != lod->first_corner[u]);
 }
 
+bool enc_lod_share_face(const enc_lod *lod, uint32_t u, uint32_t v)
+{
+    uint32_t c = lod->first_corner[u];
+
+    do
+        if (has(lod, c, v))
+            return true;
+    while ((c = lod->corner_next[c]) != lod->first_corner[u]);
+    return false;
+}
+
 /* True if a common neighbour of both is no wing. */
 static bool has_stranger(const enc_lod *lod, uint32_t v)
 {
     uint32_t end = lod->first_end[v];
 
     do {
-        const enc_lod_mark *m = enc_lod_marked(lod, lod->end_vertex[end ^ 1]);
-        if (m && !m->wing)
+        const uint32_t w = lod->end_vertex[end ^ 1];
+        const enc_lod_mark *m = enc_lod_marked(lod, w);
+        if (m && !m->wing && enc_lod_share_face(lod, v, w))
             return true;
     } while ((end = lod->end_next[end]) != lod->first_end[v]);
     return false;
@@ -92,6 +104,22 @@ static bool wings_survive(const enc_lod *lod, uint32_t u, uint32_t v)
     return true;
 }
 
+/* True if u and v, which have no edge, have faces that would become one; u is
+ * surveyed. */
+static bool faces_meet(const enc_lod *lod, uint32_t u, uint32_t v)
+{
+    uint32_t c = lod->first_corner[v];
+
+    do {
+        const uint32_t a = lod->corner_vertex[enc_lod_after(c)];
+        const uint32_t b = lod->corner_vertex[enc_lod_before(c)];
+        if (enc_lod_marked(lod, a) && enc_lod_marked(lod, b) &&
+            has_face(lod, u, a, b))
+            return true;
+    } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
+    return false;
+}
+
 /* True if there are faces around neither: some will be left, then. */
 static bool has_others(const enc_lod *lod, uint32_t u, uint32_t v)
 {
@@ -118,7 +146,7 @@ bool enc_lod_can_join(enc_lod *lod, uint32_t u, uint32_t v,
     enc_lod_survey(lod, u);
     const enc_lod_mark *edge = enc_lod_marked(lod, v);
     if (!edge)
-        return false;
+        return !faces_meet(lod, u, v);
     const bool along =
         edge->faces != 2 || (strictness == ENC_LOD_SEAMS && edge->breaks);
     if ((lod->lines[u] & lines) && (lod->lines[v] & lines) && !along)

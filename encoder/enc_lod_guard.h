@@ -19,9 +19,15 @@ typedef enum enc_lod_strictness {
  * two faces come to lie over the same vertices; and the ends are not on two
  * different lines (the link condition of Dey, Edelsbrunner, Guha and Nekhayev,
  * Topology Preserving Edge Contraction, 1999).
+ *
+ * A pair without an edge joins what is apart. There only faces may not become
+ * one.
  */
 bool enc_lod_can_join(enc_lod *lod, uint32_t u, uint32_t v,
                       enc_lod_strictness strictness);
+
+/* True if the two have an edge, that is, a face. */
+bool enc_lod_share_face(const enc_lod *lod, uint32_t u, uint32_t v);
 
 /* True if a face of u or v that survives would turn over or lose its area,
  * were both at `place`. Faces that have no area already are free. */

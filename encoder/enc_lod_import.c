@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "encoder/enc_import.h"
+#include "encoder/enc_lod_near.h"
 #include "format/alloc.h"
 
 /* Positions are rounded to this, of the extent: finer than floats are, and
@@ -167,21 +168,34 @@ static pmesh_status build(const pmesh_allocator *a,
         status = join_wedges(a, s->root, rows, width, n, s->wedge);
     if (status == PMESH_OK)
         status = enc_lod_create(a, in->indices, (uint32_t)in->face_count,
-                                in->materials, n, s->root, s->wedge, lod);
-    if (status == PMESH_OK) {
-        memcpy(lod->position, s->place, n * sizeof *lod->position);
-        if (lod->faces == 0) {
-            enc_lod_destroy(lod);
-            status = PMESH_E_NO_FACES;
-        }
-    }
+                                in->materials, n, s->root, s->wedge,
+                                (const double(*)[3])s->place, lod);
+    return status;
+}
+
+static pmesh_status pair_up(enc_lod *lod, double threshold)
+{
+    uint32_t (*near)[2], count;
+    size_t capacity;
+
+    if (lod->faces == 0)
+        return PMESH_E_NO_FACES;
+    if (!(threshold > 0))
+        return enc_lod_add_pairs(lod, NULL, 0);
+    pmesh_status status =
+        enc_lod_find_near(lod, threshold, &near, &capacity, &count);
+    if (status != PMESH_OK)
+        return status;
+    status = enc_lod_add_pairs(lod, (const uint32_t(*)[2])near, count);
+    pmesh_release(&lod->allocator, near, capacity, sizeof *near);
     return status;
 }
 
 pmesh_status enc_lod_import(const pmesh_allocator *a,
                             const pmesh_simplify_input *in, double weld,
-                            bool exact, enc_lod_channels *channels,
-                            enc_lod_frame *frame, enc_lod *lod, double **value)
+                            double threshold, bool exact,
+                            enc_lod_channels *channels, enc_lod_frame *frame,
+                            enc_lod *lod, double **value)
 {
     pmesh_status status = check(in);
 
@@ -200,6 +214,11 @@ pmesh_status enc_lod_import(const pmesh_allocator *a,
     status = s.place && s.root && s.wedge && *value
                  ? build(a, in, weld, exact, channels, frame, &s, lod, *value)
                  : PMESH_E_MEMORY;
+    if (status == PMESH_OK) {
+        status = pair_up(lod, threshold / frame->extent);
+        if (status != PMESH_OK)
+            enc_lod_destroy(lod);
+    }
     pmesh_release(a, s.place, n, sizeof *s.place);
     pmesh_release(a, s.root, n, sizeof *s.root);
     pmesh_release(a, s.wedge, n, sizeof *s.wedge);

@@ -14,8 +14,8 @@ void enc_lod_input_position(const pmesh_simplify_input *in, size_t vertex,
                             double out[3]);
 
 /*
- * Checks the input, finds the frame, joins positions and makes the mesh and
- * the rows of its values, which go to *value with room for all vertices.
+ * Checks the input, finds the frame, joins positions closer than `weld`,
+ * makes the mesh, with pairs of vertices closer than `threshold`, and the rows of its values, which go to *value with room for all vertices.
  *
  * exact: every input vertex is a wedge of its own, since the result is going
  * to name it; else those that agree in position and values are one.
@@ -24,8 +24,8 @@ void enc_lod_input_position(const pmesh_simplify_input *in, size_t vertex,
  */
 pmesh_status enc_lod_import(const pmesh_allocator *allocator,
                             const pmesh_simplify_input *in, double weld,
-                            bool exact, enc_lod_channels *channels,
-                            enc_lod_frame *frame, enc_lod *lod,
-                            double **value);
+                            double threshold, bool exact,
+                            enc_lod_channels *channels, enc_lod_frame *frame,
+                            enc_lod *lod, double **value);
 
 #endif

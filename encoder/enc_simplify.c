@@ -27,6 +27,7 @@ typedef struct enc_lod_run {
     uint32_t tick;
     uint32_t face_target, vertex_target;
     double error_limit, error; /* squared, in the frame */
+    size_t joined;             /* contractions without an edge */
     bool too_far;              /* some contraction was refused for the limit */
 } enc_lod_run;
 
@@ -154,6 +155,7 @@ static void contract(enc_lod_run *run, uint32_t pair,
     run->moved[offer->kept] = run->pricer.placement != PMESH_PLACE_ENDPOINT;
     run->error = fmax(run->error, error);
     enc_lod_pricer_move(&run->pricer, offer);
+    run->joined += !enc_lod_share_face(&run->lod, offer->gone, offer->kept);
     enc_lod_contract(&run->lod, pair, offer->gone, offer->kept);
     enc_lod_settle(&run->pricer.wedges, offer->kept);
     if (run->strictness == ENC_LOD_LOOSE)
@@ -210,7 +212,7 @@ static void contract_all(enc_lod_run *run)
             return;
         run->strictness = (enc_lod_strictness)(run->strictness + 1);
         run->pricer.break_seams =
-            run->channels.active > 0 || run->strictness == ENC_LOD_LOOSE;
+            run->channels.count > 0 || run->strictness == ENC_LOD_LOOSE;
         price_all(run);
     }
 }
@@ -220,7 +222,8 @@ static void contract_all(enc_lod_run *run)
 static bool in_range(const pmesh_simplify_options *o)
 {
     return o->ratio >= 0 && o->ratio < INFINITY && o->error >= 0 &&
-           o->weld >= 0 && o->weld < INFINITY && o->boundary >= 0 &&
+           o->weld >= 0 && o->weld < INFINITY && o->threshold >= 0 &&
+           o->threshold < INFINITY && o->boundary >= 0 &&
            o->boundary < INFINITY && o->memory >= 0 && o->memory < INFINITY &&
            o->seam >= 0 && o->seam < INFINITY &&
            (unsigned)o->placement <= PMESH_PLACE_ENDPOINT &&
@@ -384,8 +387,8 @@ pmesh_status pmesh_simplify_mesh(const pmesh_simplify_input *mesh,
          i++)
         moving = moving && out->attribute_values[i];
     pmesh_status status =
-        enc_lod_import(&a, mesh, options->weld, !moving, &run.channels, &frame,
-                       &run.lod, &value);
+        enc_lod_import(&a, mesh, options->weld, options->threshold, !moving,
+                       &run.channels, &frame, &run.lod, &value);
     if (status != PMESH_OK)
         return status;
     const size_t all = run.lod.faces;
@@ -403,6 +406,7 @@ pmesh_status pmesh_simplify_mesh(const pmesh_simplify_input *mesh,
         put_costs(&run, out);
         out->end = reason(&run);
         out->error = sqrt(run.error) * frame.extent;
+        out->joined = run.joined;
         out->dropped_faces = mesh->face_count - all;
     }
     release(&run, &a);

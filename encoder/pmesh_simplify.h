@@ -148,6 +148,10 @@ typedef struct pmesh_simplify_options {
     pmesh_cost_hook hook;  /* of PMESH_COST_CUSTOM */
     void *user;            /* of the hook */
     double weld;           /* join positions this close, model units */
+    double threshold;      /* contract vertices without an edge, too, if they
+                              are closer than this, model units, and no wall is
+                              between them: parts that are apart grow together.
+                              Each has 8 such pairs with later ones at most */
     double boundary;       /* weight of planes that hold edges of one face, in
                               squared lengths of the edge; default 10 */
     double seam;           /* the same of seams of attributes and of borders of
@@ -186,6 +190,7 @@ typedef struct pmesh_simplify_output {
                      it is largest, model units; never falls while faces do */
     double cost_least, cost_mean, cost_most; /* of the contractions that may
                      come next; 0 if there is none */
+    size_t joined;        /* contractions without an edge: see threshold */
     size_t dropped_faces; /* of the input: degenerate or not finite */
 } pmesh_simplify_output;
 

@@ -23,7 +23,7 @@ typedef struct options {
     int placement, metric, cost;
     uint32_t faces, vertices;
     double ratio, error; /* negative: not given */
-    double weld, memory;
+    double weld, threshold, memory;
     lod_weights weights;
     bool loose, no_attributes, json, quiet;
 } options;
@@ -81,6 +81,10 @@ static const args_option option_table[] = {
       .max = DBL_MAX, AT(weld),
       .help = "join positions this close (model units);\n"
               "default 0: only equal ones" },
+    { .name = "threshold", .kind = ARGS_NUMBER, .value = "T", .min = 0,
+      .max = DBL_MAX, AT(threshold),
+      .help = "also contract unconnected vertices closer than T\n"
+              "(model units): parts grow together" },
     { .name = "loose", .kind = ARGS_FLAG, AT(loose),
       .help = "rather than stopping early, let pieces vanish and\n"
               "holes close" },
@@ -167,6 +171,7 @@ static int configure(const options *o, pmesh_simplify_options *to)
     to->cost = (pmesh_cost)o->cost;
     to->memory = o->memory;
     to->weld = o->weld;
+    to->threshold = o->threshold;
     to->loose = o->loose;
     if (o->placement >= 0)
         to->placement = (pmesh_place)o->placement;
@@ -222,6 +227,7 @@ static void print_json(const simplification *s)
     json_count(&j, "dropped_faces", s->lod.dropped_faces);
     json_count(&j, "faces", s->result.face_count);
     json_count(&j, "vertices", s->lod.vertices);
+    json_count(&j, "joined", s->lod.joined);
     json_text(&j, "end", ends[s->lod.end]);
     json_number(&j, "error", s->lod.error);
     json_number(&j, "cost_min", s->lod.cost_least);

@@ -264,7 +264,8 @@ pmesh_status lod_make(const asset *in, const pmesh_simplify_options *options,
                                 .cost_least = job.out.cost_least,
                                 .cost_mean = job.out.cost_mean,
                                 .cost_most = job.out.cost_most,
-                                .dropped_faces = job.out.dropped_faces };
+                                .dropped_faces = job.out.dropped_faces,
+                                .joined = job.out.joined };
         if (!take_positions(&job, out) || !take_attributes(&job, out) ||
             !take_materials(&job, out)) {
             asset_free(out);

@@ -17,7 +17,7 @@ typedef struct lod_report {
     pmesh_simplify_end end;
     size_t vertices; /* distinct positions */
     double error, cost_least, cost_mean, cost_most;
-    size_t dropped_faces;
+    size_t dropped_faces, joined;
 } lod_report;
 
 /*

@@ -211,6 +211,36 @@ bool lods_is_closed(const lods *l)
     return true;
 }
 
+static uint32_t root(uint32_t *parent, uint32_t v)
+{
+    while (parent[v] != v)
+        v = parent[v] = parent[parent[v]];
+    return v;
+}
+
+size_t lods_components(const lods *l)
+{
+    const size_t n = l->in.vertex_count;
+    uint32_t *parent = malloc(n * sizeof *parent);
+    bool *seen = calloc(n, sizeof *seen);
+    size_t count = 0;
+
+    for (uint32_t v = 0; v < n; v++)
+        parent[v] = v;
+    for (size_t c = 0; c < 3 * l->out.face_count; c++) {
+        const uint32_t *p = &l->out.position_indices[c - c % 3];
+        parent[root(parent, p[c % 3])] = root(parent, p[0]);
+    }
+    for (size_t c = 0; c < 3 * l->out.face_count; c++) {
+        const uint32_t r = root(parent, l->out.position_indices[c]);
+        count += !seen[r];
+        seen[r] = true;
+    }
+    free(parent);
+    free(seen);
+    return count;
+}
+
 bool lods_same_faces(const lods *a, const lods *b)
 {
     return a->out.face_count == b->out.face_count &&

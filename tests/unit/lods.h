@@ -42,6 +42,8 @@ pmesh_status lods_run(lods *l);
 bool lods_is_sound(const lods *l);
 /* And every edge has two faces that run opposite ways, by position_indices. */
 bool lods_is_closed(const lods *l);
+/* Pieces of the result, by position_indices. */
+size_t lods_components(const lods *l);
 bool lods_same_faces(const lods *a, const lods *b);
 /* Of double length, of twice the area. */
 void lods_normal(const lods *l, size_t face, double out[3]);
