@@ -106,3 +106,28 @@ TEST(simplify_asks_a_hook_for_costs)
     CHECK(l->out.vertex_count < l->in.vertex_count * 3 / 4);
     lods_free(l);
 }
+
+TEST(simplify_contracts_the_cheapest_of_all)
+{
+    lods *l = lods_sphere(12);
+
+    l->options.cost = PMESH_COST_LENGTH;
+    l->options.placement = PMESH_PLACE_MIDPOINT;
+    for (size_t faces = l->in.face_count; faces > 100; faces -= 10) {
+        double least = HUGE_VAL;
+        l->options.faces = faces;
+        CHECK(lods_run(l) == PMESH_OK);
+        for (size_t c = 0; c < 3 * l->out.face_count; c++) {
+            const size_t next = c % 3 == 2 ? c - 2 : c + 1;
+            const double *p = &l->out.positions[3 * (size_t)l->out.indices[c]];
+            const double *q =
+                &l->out.positions[3 * (size_t)l->out.indices[next]];
+            double square = 0;
+            for (size_t i = 0; i < 3; i++)
+                square += (p[i] - q[i]) * (p[i] - q[i]);
+            least = fmin(least, sqrt(square) / 2);
+        }
+        CHECK(fabs(l->out.cost_least - least) < 1e-8);
+    }
+    lods_free(l);
+}
