@@ -46,10 +46,11 @@ static pmesh_status allocate(enc_lod *lod)
     lod->first_end = pmesh_alloc(a, n, sizeof *lod->first_end);
     lod->lines = pmesh_alloc_zero(a, n, sizeof *lod->lines);
     lod->lone = pmesh_alloc(a, n, sizeof *lod->lone);
+    lod->normal = pmesh_alloc(a, n, sizeof *lod->normal);
     lod->mark = pmesh_alloc_zero(a, n, sizeof *lod->mark);
     return lod->position && lod->first_corner && lod->corner_vertex &&
                    lod->corner_wedge && lod->corner_next && lod->first_end &&
-                   lod->lines && lod->lone && lod->mark
+                   lod->lines && lod->lone && lod->normal && lod->mark
                ? PMESH_OK
                : PMESH_E_MEMORY;
 }
@@ -72,6 +73,7 @@ void enc_lod_destroy(enc_lod *lod)
     pmesh_release(a, lod->end_next, ends, sizeof *lod->end_next);
     pmesh_release(a, lod->lines, n, sizeof *lod->lines);
     pmesh_release(a, lod->lone, n, sizeof *lod->lone);
+    pmesh_release(a, lod->normal, n, sizeof *lod->normal);
     pmesh_release(a, lod->mark, n, sizeof *lod->mark);
     *lod = (enc_lod){ 0 };
 }
@@ -227,6 +229,20 @@ void enc_lod_survey(enc_lod *lod, uint32_t v)
         (uint8_t)((rim ? ENC_LOD_RIM : 0) |
                   (seams > 0 && seams <= 2 * MAX_SEAMS ? ENC_LOD_SEAM : 0));
     lod->lone[v] = lone;
+}
+
+void enc_lod_sum_normals(enc_lod *lod, uint32_t v)
+{
+    uint32_t c = lod->first_corner[v];
+    double *sum = lod->normal[v];
+
+    sum[0] = sum[1] = sum[2] = 0;
+    do {
+        double n[3];
+        enc_lod_normal(lod, c, lod->position[v], n);
+        for (int i = 0; i < 3; i++)
+            sum[i] += n[i];
+    } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
 }
 
 /* ---- contraction --------------------------------------------------------- */

@@ -55,6 +55,8 @@ typedef struct enc_lod {
 
     uint8_t *lines; /* per vertex: ENC_LOD_RIM, ENC_LOD_SEAM */
     uint32_t *lone; /* per vertex: its only wedge, or ENC_NONE */
+    double (*normal)[3]; /* per vertex: of its faces, summed; see
+                            enc_lod_sum_normals() */
     enc_lod_mark *mark;
     uint32_t stamp;
 } enc_lod;
@@ -118,6 +120,9 @@ static inline void enc_lod_normal(const enc_lod *lod, uint32_t corner,
  *     uint32_t c = lod->first_corner[v];
  *     do { ... } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
  * and so with the ends of its pairs; end ^ 1 is the other end. */
+
+/* Brings normal[v] up to date. */
+void enc_lod_sum_normals(enc_lod *lod, uint32_t v);
 
 /* Marks the neighbours of v and brings lines[v] and lone[v] up to date. */
 void enc_lod_survey(enc_lod *lod, uint32_t v);

@@ -14,7 +14,6 @@ typedef struct near_grid {
     size_t size;     /* a power of two */
     uint32_t *first; /* per slot */
     uint32_t *next;  /* per vertex: ascending */
-    double (*normal)[3];
 } near_grid;
 
 typedef struct near_best {
@@ -43,20 +42,6 @@ static size_t slot_of(const near_grid *g, const int64_t cell[3])
     return (size_t)hash & (g->size - 1);
 }
 
-static void sum_normals(near_grid *g, uint32_t v)
-{
-    const enc_lod *lod = g->lod;
-    uint32_t c = lod->first_corner[v];
-
-    memset(g->normal[v], 0, sizeof g->normal[v]);
-    do {
-        double n[3];
-        enc_lod_normal(lod, c, lod->position[v], n);
-        for (int i = 0; i < 3; i++)
-            g->normal[v][i] += n[i];
-    } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
-}
-
 static void fill(near_grid *g)
 {
     memset(g->first, 0xff, g->size * sizeof *g->first);
@@ -68,7 +53,7 @@ static void fill(near_grid *g)
         const size_t slot = slot_of(g, cell);
         g->next[v] = g->first[slot];
         g->first[slot] = v;
-        sum_normals(g, v);
+        enc_lod_sum_normals(g->lod, v);
     }
 }
 
@@ -79,8 +64,9 @@ static bool no_wall(const near_grid *g, uint32_t u, uint32_t v)
     const double *p = g->lod->position[u], *q = g->lod->position[v];
     const double way[3] = { q[0] - p[0], q[1] - p[1], q[2] - p[2] };
 
-    return dot(g->normal[u], g->normal[v]) >= 0 ||
-           (dot(g->normal[u], way) >= 0 && dot(g->normal[v], way) <= 0);
+    return dot(g->lod->normal[u], g->lod->normal[v]) >= 0 ||
+           (dot(g->lod->normal[u], way) >= 0 &&
+            dot(g->lod->normal[v], way) <= 0);
 }
 
 /* Keeps the closest, in ascending order. */
@@ -173,14 +159,12 @@ pmesh_status enc_lod_find_near(enc_lod *lod, double threshold,
     *pairs = pmesh_alloc(a, *capacity, sizeof **pairs);
     g.first = pmesh_alloc(a, g.size, sizeof *g.first);
     g.next = pmesh_alloc(a, n, sizeof *g.next);
-    g.normal = pmesh_alloc(a, n, sizeof *g.normal);
-    const bool good = *pairs && g.first && g.next && g.normal;
+    const bool good = *pairs && g.first && g.next;
     if (good)
         *count = list(&g, *pairs);
     else
         pmesh_release(a, *pairs, *capacity, sizeof **pairs);
     pmesh_release(a, g.first, g.size, sizeof *g.first);
     pmesh_release(a, g.next, n, sizeof *g.next);
-    pmesh_release(a, g.normal, n, sizeof *g.normal);
     return good ? PMESH_OK : PMESH_E_MEMORY;
 }

@@ -188,29 +188,30 @@ static double cost_of(const enc_lod_pricer *p, const enc_lod_edge *e,
     return value + tie;
 }
 
-/* Faces around both ends, each once, move through volume n'x. */
+/* n'x of both ends' faces, each once, is the volume that they gain. */
 static bool volume_plane(const enc_lod_pricer *p, const enc_lod_edge *e,
                          enc_plane *keep)
 {
     const enc_lod *lod = p->lod;
+    const double *at = lod->position[e->gone];
+    uint32_t c = lod->first_corner[e->gone];
+    double rest[3]; /* of `kept` without the faces of both */
 
-    *keep = (enc_plane){ { 0, 0, 0 }, 0 };
     if ((lod->lines[e->gone] | lod->lines[e->kept]) & ENC_LOD_RIM)
         return false;
-    for (int side = 0; side < 2; side++) {
-        const uint32_t v = side ? e->kept : e->gone;
-        const double sign = side ? -1 : 1;
-        uint32_t c = lod->first_corner[v];
-        do {
-            double n[3];
-            if (side && enc_lod_corner_of(lod, c, e->gone) != ENC_NONE)
-                continue;
-            enc_lod_normal(lod, c, lod->position[v], n);
-            for (int i = 0; i < 3; i++)
-                keep->n[i] += n[i];
-            keep->offset += sign * dot(n, e->half);
-        } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
-    }
+    memcpy(rest, lod->normal[e->kept], sizeof rest);
+    do {
+        double n[3];
+        if (enc_lod_corner_of(lod, c, e->kept) == ENC_NONE)
+            continue;
+        enc_lod_normal(lod, c, at, n);
+        for (int i = 0; i < 3; i++)
+            rest[i] -= n[i];
+    } while ((c = lod->corner_next[c]) != lod->first_corner[e->gone]);
+    const double *own = lod->normal[e->gone];
+    for (int i = 0; i < 3; i++)
+        keep->n[i] = own[i] + rest[i];
+    keep->offset = dot(own, e->half) - dot(rest, e->half);
     return true;
 }
 

@@ -113,22 +113,24 @@ static bool is_legal(enc_lod_run *run, const enc_lod_offer *offer)
              !values_flip(run, offer->kept, offer->gone)));
 }
 
+static void renew(enc_lod_run *run, uint32_t v)
+{
+    if (run->options->metric == PMESH_MEMORYLESS)
+        enc_lod_renew(&run->pricer.wedges, v);
+    else
+        enc_lod_survey(&run->lod, v);
+    enc_lod_sum_normals(&run->lod, v);
+}
+
 static void renew_around(enc_lod_run *run, uint32_t v)
 {
     enc_lod *lod = &run->lod;
     uint32_t end = lod->first_end[v];
 
-    if (run->options->metric == PMESH_MEMORYLESS)
-        enc_lod_renew(&run->pricer.wedges, v);
-    else
-        enc_lod_survey(lod, v);
-    do {
-        const uint32_t w = lod->end_vertex[end ^ 1];
-        if (run->options->metric == PMESH_MEMORYLESS)
-            enc_lod_renew(&run->pricer.wedges, w);
-        else
-            enc_lod_survey(lod, w);
-    } while ((end = lod->end_next[end]) != lod->first_end[v]);
+    renew(run, v);
+    do
+        renew(run, lod->end_vertex[end ^ 1]);
+    while ((end = lod->end_next[end]) != lod->first_end[v]);
     run->tick++;
     price_around(run, v);
     do
@@ -265,6 +267,7 @@ static pmesh_status prepare(enc_lod_run *run, const pmesh_allocator *a)
         if (run->lod.first_corner[v] != ENC_NONE) {
             enc_lod_renew(&run->pricer.wedges, v);
             enc_lod_pricer_remember(&run->pricer, v);
+            enc_lod_sum_normals(&run->lod, v);
         }
     price_all(run);
     return PMESH_OK;
