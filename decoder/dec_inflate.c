@@ -7,6 +7,7 @@
 
 #include "decoder/dec_internal.h"
 #include "format/inflate.h"
+#include "format/quantize.h"
 
 size_t pmesh_decoder_inflate_room(const pmesh_decoder *dec)
 {
@@ -67,7 +68,7 @@ pmesh_status pmesh_decoder_copy_inflated(const pmesh_decoder *dec, float *dst,
             continue;
         memcpy(xyz, at, sizeof xyz);
         for (int k = 0; k < 3; k++)
-            xyz[k] = (float)(xyz[k] + to_model * height[k]);
+            xyz[k] = pmesh_narrow((double)xyz[k] + to_model * height[k]);
         memcpy(at, xyz, sizeof xyz);
     }
     return PMESH_OK;
