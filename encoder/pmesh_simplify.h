@@ -105,6 +105,12 @@ typedef double (*pmesh_cost_hook)(void *user, const pmesh_simplify_pair *pair);
  *
  * weight: by how much of the model's largest extent a difference of 1 counts,
  * per component; 0: it has no influence and is interpolated along the edges.
+ * 0.01 for normals, 0.1 for texture coordinates and 0.03 for colours drew the
+ * best pictures of tests/bench/attributes.sh.
+ *
+ * Where an attribute varies within what becomes one triangle, no simplifier can
+ * keep it at the vertices: bake it into a texture of the original, and give the
+ * texture's coordinates here.
  */
 typedef struct pmesh_simplify_attribute {
     pmesh_attribute_kind kind; /* normals are scaled to 1, colours clamped to

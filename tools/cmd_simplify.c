@@ -163,10 +163,12 @@ static int find_format(const options *o, asset_format *format)
 static int configure(const options *o, pmesh_simplify_options *to)
 {
     *to = pmesh_simplify_options_default();
-    to->faces = o->faces;
+    to->faces = o->ratio >= 0 && o->faces == 0 ? 1 : o->faces;
     to->vertices = o->vertices;
+    /* 29 % of 100 faces are 29, though 0.29 * 100 is a little less. */
     to->ratio = o->ratio > 0 ? o->ratio * (1 + DBL_EPSILON) : 0;
-    to->error = o->error > 0 ? o->error : 0;
+    if (o->error >= 0) /* the library takes 0 for no bound */
+        to->error = o->error > 0 ? o->error : DBL_MIN;
     to->metric = (pmesh_metric)o->metric;
     to->cost = (pmesh_cost)o->cost;
     to->memory = o->memory;

@@ -16,6 +16,11 @@ ok 'why it ended' out '"end": "vertices"'
 check '--error' 0 simplify "$torus" -o n.obj --error 0.01 --json
 ok '--error: why it ended' out '"end": "error"'
 ok '--error: fewer faces' between "$(json faces)" 4 4000
+check '--error 0' 0 simplify "$torus" -q -o n.obj --error 0
+ok '--error 0: nothing may be lost' test "$(faces n.obj)" = 4608
+check '--ratio 0' 0 simplify "$torus" -o n.obj --ratio 0
+ok '--ratio 0: as far as it goes' between "$(faces n.obj)" 4 40
+ok '--ratio 0: a warning' err 'warning: stopped at'
 check 'the first of several bounds' 0 \
     simplify "$torus" -q -o n.obj --faces 100 --ratio 50%
 ok 'the first of several bounds is met' between "$(faces n.obj)" 2303 2304

@@ -46,6 +46,8 @@ nothing_left() {
 
 cat >"$dir/user.c" <<'C'
 #include <pmesh_decode.h>
+#include <pmesh_encode.h>
+#include <pmesh_simplify.h>
 int main(void)
 {
     pmesh_decoder *dec;
