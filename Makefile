@@ -129,6 +129,10 @@ check:
 unit: $(B)/unit
 	$< $(T)
 
+## single: the decoder as two files, build/single/pmesh_decode.[ch]
+single:
+	@tools/amalgamate.sh build/single $(version)
+
 ## train: make the codec's starting tables anew from TRAIN_ON="a.obj b.obj"
 train: $(B)/train
 	TRAIN=$< tests/train/train.sh $(TRAIN_ON)
@@ -224,7 +228,7 @@ clean:
 help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
-.PHONY: all demo test check unit check-deps check-headers check-symbols bench
+.PHONY: all demo test check unit single check-deps check-headers check-symbols bench
 .PHONY: check-cross check-reference golden deps bench-deps cross-deps install
 .PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -96,7 +96,7 @@ uint64_t dec_view_bind(dec_view *view, const pmesh_header_chunk *h, void *block)
     if (!block)
         return at[6];
 
-    uint8_t *base = block;
+    uint8_t *base = (uint8_t *)block;
     *view = (dec_view){ .index = (void *)(base + at[0]),
                         .moved_first = (void *)(base + at[1]),
                         .moved = (void *)(base + at[2]) };

@@ -436,7 +436,7 @@ static uint32_t find(const options *list, const pmesh_cut *cut)
 void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
                     const pmesh_ring *ring, pmesh_cut *cut)
 {
-    options *list = c->cut_room;
+    options *list = (options *)c->cut_room;
     shape s;
 
     s.count = ring->count;
