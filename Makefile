@@ -172,14 +172,15 @@ bench: bench-all
 ## bench-quality: distance at equal faces, against CGAL and meshoptimizer
 ## bench-decode: time to decode, against Draco
 ## bench-lossless: cost of exact positions
+## bench-refine: time and uploads of moving among decoded splits
 ## bench-time: time and memory of the commands
-bench_programs := $(addprefix $(B)/bench_,decode qem simplify)
+bench_programs := $(addprefix $(B)/bench_,decode qem refine simplify)
 bench-%: bench-deps
 	+@$(submake) all $(bench_programs)
 	@PMESH=$(B)/pmesh tests/bench/$*.sh
 $(bench_programs): $(B)/bench_%: $(B)/tests/bench/bench_%.o
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bench_libs) -o $@
-$(B)/bench_decode: $(B)/libpmesh-dec.a
+$(B)/bench_decode $(B)/bench_refine: $(B)/libpmesh-dec.a
 $(B)/bench_decode: bench_libs := -ldraco
 $(B)/bench_simplify: bench_libs := -lmeshoptimizer -lgmp -lmpfr
 
