@@ -5,30 +5,35 @@
  *
  *   cc upload.c pmesh_decode.c -o upload && ./upload bunny.pmesh 5000
  *
- * Buffers are made once, as large as the header says; after each piece of the
- * file the ranges that changed are sent again. The second argument is a budget
- * of faces: reading stops once it is met.
+ * Buffers are made once, as large as the header says, and bound: after each
+ * piece of the file the decoder writes what changed into them and names the
+ * ranges to send again. The second argument is a budget of faces: reading
+ * stops once it is met.
  */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "pmesh_decode.h"
 
 enum { PIECE = 16384 }; /* bytes that arrive at a time */
 
-/* The two buffers of the graphics card, and what was sent. */
+/* The memory behind two buffers of the graphics card, and what was sent. */
 typedef struct buffers {
-    float *positions;
+    pmesh_buffers bound;
     unsigned long vertices, faces; /* sent in all */
     unsigned uploads;
 } buffers;
 
-static int make_buffers(buffers *b, const pmesh_header *h)
+static int make_buffers(buffers *b, pmesh_decoder *dec, const pmesh_header *h)
 {
+    b->bound.index_size = h->vertices <= 65536 ? 2 : 4;
+    b->bound.positions = (float *)malloc(12 * (size_t)h->vertices);
+    b->bound.indices = malloc(3 * b->bound.index_size * (size_t)h->faces);
     printf("vertex buffer %lu bytes, index buffer %lu bytes\n",
-           12ul * h->vertices, 12ul * h->faces);
-    b->positions = (float *)malloc(12 * (size_t)h->vertices);
-    return b->positions != NULL;
+           12ul * h->vertices, 3ul * b->bound.index_size * h->faces);
+    return b->bound.positions && b->bound.indices &&
+           pmesh_decoder_bind(dec, &b->bound) == PMESH_OK;
 }
 
 static void upload(buffers *b, const pmesh_changes *c)
@@ -48,21 +53,21 @@ static void upload(buffers *b, const pmesh_changes *c)
 /* Shows what can be shown; true once the budget is met. */
 static int show(pmesh_decoder *dec, buffers *b, uint32_t budget)
 {
-    pmesh_target target = { 0, 0, 0 };
+    pmesh_target target;
     pmesh_header header;
     pmesh_changes changes;
     pmesh_view view;
 
     if (pmesh_decoder_header(dec, &header) != PMESH_OK)
         return 0;
-    if (!b->positions && !make_buffers(b, &header))
+    if (!b->bound.positions && !make_buffers(b, dec, &header))
         return 1;
+    memset(&target, 0, sizeof target); /* no limits */
     target.faces = budget;
     if (pmesh_decoder_refine(dec, &target, &changes) != PMESH_OK)
         return 0;
     upload(b, &changes);
     pmesh_decoder_mesh(dec, &view);
-    pmesh_decoder_copy_positions(dec, b->positions, 0);
     printf("%7lu bytes: draw %6lu faces of %6lu vertices, error %.4g\n",
            (unsigned long)pmesh_decoder_progress(dec).bytes,
            (unsigned long)view.face_count, (unsigned long)view.vertex_count,
@@ -73,10 +78,11 @@ static int show(pmesh_decoder *dec, buffers *b, uint32_t budget)
 static int play(FILE *file, pmesh_decoder *dec, uint32_t budget)
 {
     static unsigned char piece[PIECE];
-    buffers b = { NULL, 0, 0, 0 };
+    buffers b;
     pmesh_status status = PMESH_NEED_DATA;
     size_t size;
 
+    memset(&b, 0, sizeof b);
     while (status == PMESH_NEED_DATA &&
            (size = fread(piece, 1, sizeof piece, file)) > 0) {
         status = pmesh_decoder_feed(dec, piece, size);
@@ -85,7 +91,8 @@ static int play(FILE *file, pmesh_decoder *dec, uint32_t budget)
     }
     printf("sent %lu vertices and %lu faces in %u uploads\n", b.vertices,
            b.faces, b.uploads);
-    free(b.positions);
+    free(b.bound.positions);
+    free(b.bound.indices);
     if (status < 0)
         fprintf(stderr, "byte %lu: %s\n",
                 (unsigned long)pmesh_decoder_error(dec).offset,
