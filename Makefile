@@ -133,6 +133,10 @@ unit: $(B)/unit
 single:
 	@tools/amalgamate.sh build/single $(version)
 
+## web: the npm package with the decoder as WebAssembly, build/web/pmesh
+web:
+	@tools/web/build.sh build/web/pmesh $(version)
+
 ## train: make the codec's starting tables anew from TRAIN_ON="a.obj b.obj"
 train: $(B)/train
 	TRAIN=$< tests/train/train.sh $(TRAIN_ON)
@@ -152,6 +156,11 @@ check-symbols: $(libs)
 ## check-cross: the same results on other compilers and machines (tests/cross)
 check-cross: cross-deps
 	@tests/cross/all.sh build/cross
+
+## check-web: the npm package in node, the viewer in a browser (tests/web)
+check-web: web-deps
+	+@$(submake) $(B)/pmesh
+	@PMESH=$(B)/pmesh tests/web/run.sh
 
 ## check-reference: 10,000 files against a decoder made from SPEC.md alone
 check-reference:
@@ -190,6 +199,9 @@ deps:
 ## bench-deps: those that `make bench` needs
 bench-deps:
 	@tests/install-deps.sh build bench
+## web-deps: those that `make web` and `make check-web` need
+web-deps:
+	@tests/install-deps.sh build web
 ## cross-deps: those that `make check-cross` needs
 cross-deps:
 	@tests/install-deps.sh cross
@@ -229,7 +241,8 @@ clean:
 help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
-.PHONY: all demo test check unit single check-deps check-headers check-symbols bench
-.PHONY: check-cross check-reference golden deps bench-deps cross-deps install
+.PHONY: all demo test check unit single web check-deps check-headers check-symbols bench
+.PHONY: check-cross check-reference golden deps bench-deps cross-deps web-deps
+.PHONY: check-web install
 .PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
