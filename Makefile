@@ -137,6 +137,10 @@ single:
 web:
 	@tools/web/build.sh build/web/pmesh $(version)
 
+## viewer: the page of `pmesh view`, build/web/viewer.html (Node and npm)
+viewer: web
+	@tools/web/viewer/build.sh build/web/pmesh build/web/viewer.html
+
 ## train: make the codec's starting tables anew from TRAIN_ON="a.obj b.obj"
 train: $(B)/train
 	TRAIN=$< tests/train/train.sh $(TRAIN_ON)
@@ -160,7 +164,7 @@ check-cross: cross-deps
 ## check-web: the npm package in node, the viewer in a browser (tests/web)
 check-web: web-deps
 	+@$(submake) $(B)/pmesh
-	@PMESH=$(B)/pmesh tests/web/run.sh
+	@NPM=1 PMESH=$(B)/pmesh tests/web/run.sh
 
 ## check-reference: 10,000 files against a decoder made from SPEC.md alone
 check-reference:
@@ -210,6 +214,7 @@ headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h
 lib := $(DESTDIR)$(LIBDIR)
 include := $(DESTDIR)$(PREFIX)/include
 bin := $(DESTDIR)$(PREFIX)/bin
+share := $(DESTDIR)$(PREFIX)/share/pmesh
 man := $(DESTDIR)$(PREFIX)/share/man/man1
 
 ## install: into PREFIX (/usr/local) below DESTDIR
@@ -221,6 +226,9 @@ install: all
 	install -m 755 $(B)/libpmesh.so $(lib)/libpmesh.so.$(version)
 	ln -sf libpmesh.so.$(version) $(lib)/$(soname)
 	ln -sf $(soname) $(lib)/libpmesh.so
+	if [ -e build/web/viewer.html ]; then \
+	  install -d $(share) && install -m 644 build/web/viewer.html $(share); \
+	else echo "no page for pmesh view: 'make viewer' makes it"; fi
 	for h in $(headers); do sed 's|#include "format/|#include "|' $$h \
 	  >$(include)/$${h##*/}; done
 	sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|' \
@@ -228,7 +236,7 @@ install: all
 
 ## uninstall: remove what install put there
 uninstall:
-	rm -f $(bin)/pmesh $(man)/pmesh.1
+	rm -f $(bin)/pmesh $(man)/pmesh.1 $(share)/viewer.html
 	rm -f $(addprefix $(include)/,$(notdir $(headers)))
 	rm -f $(lib)/libpmesh.a $(lib)/libpmesh-dec.a $(lib)/libpmesh.so*
 	rm -f $(lib)/pkgconfig/pmesh.pc
@@ -241,7 +249,7 @@ clean:
 help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
-.PHONY: all demo test check unit single web check-deps check-headers check-symbols bench
+.PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
 .PHONY: check-cross check-reference golden deps bench-deps cross-deps web-deps
 .PHONY: check-web install
 .PHONY: uninstall clean help FORCE

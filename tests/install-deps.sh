@@ -74,6 +74,8 @@ group_web() {
     need clang program clang
     need lld program wasm-ld
     need nodejs program node
+    need npm program npm
+    need chromium program chromium
 }
 
 only_check=false

@@ -3,39 +3,84 @@
 # Usage: PMESH=build/release/pmesh tests/web/run.sh
 #
 # The npm package in node, with a server on loopback: the same bits as native
-# code, loading, workers. three.js and a real browser are tests/browser.
+# code, loading, workers. Then the viewer's page in headless Chromium, if that
+# is there and so is what npm brings (with NPM=1 it is fetched, as `make
+# check-web` does). What is skipped is said.
 set -u
+status=0
+passed=0
+failed=0
+web=build/web
+mkdir -p $web
+dir=$(mktemp -d $web/test-XXXXXX) && dir=$PWD/$dir || exit 1
+trap 'rm -rf "$dir"' EXIT
+
+skip() {
+    echo "web: $1 (make check-web installs what is needed)"
+}
+
+finish() {
+    echo "$passed passed, $failed failed"
+    [ "$failed" = 0 ] && [ "$status" = 0 ]
+    exit
+}
+
+# run_tests FILE...: in node; adds up what passed
+run_tests() {
+    timeout 300 node --no-warnings --test --test-timeout=120000 \
+        --test-reporter=tap "$@" >"$dir/tap" 2>&1 || status=$?
+    for word in pass fail; do
+        count=$(sed -n "s/^# $word \([0-9]*\)\$/\1/p" "$dir/tap" | tail -n 1)
+        case $word in
+        pass) passed=$((passed + ${count:-0})) ;;
+        fail) failed=$((failed + ${count:-1})) ;;
+        esac
+    done
+    grep '^# first picture' "$dir/tap"
+    [ $status = 0 ] || sed -n '/^ *not ok/,/^ *\.\.\./p' "$dir/tap" |
+        head -n 100
+}
+
 for tool in clang wasm-ld node; do
     command -v $tool >/dev/null || {
-        echo "web: skipped, there is no $tool (make check-web installs it)"
-        echo "0 passed, 0 failed"
-        exit 0
+        skip "skipped, there is no $tool"
+        finish
     }
 done
-status=0
-dir=$(mktemp -d) || exit 1
-trap 'rm -rf "$dir"' EXIT
-package=build/web/pmesh
-tools/web/build.sh $package 0.0.0 || exit 1
-# Beside the package, where "pmesh" is found.
-tests=build/web/tests
-mkdir -p build/web/node_modules $tests
-ln -sfn ../pmesh build/web/node_modules/pmesh
-cp tests/web/*.mjs $tests
-
-"$PMESH" sample -o "$dir/a.ply" --faces 30k &&
+tools/web/build.sh $web/pmesh 0.0.0 || exit 1
+"$PMESH" sample -o "$dir/a.ply" --faces 70k &&
     "$PMESH" bake -q "$dir/a.ply" -o "$dir/a.pmesh" &&
     "$PMESH" bake -q "$dir/a.ply" -o "$dir/b.pmesh" --no-attributes || exit 1
+PMESH_GOLDEN=$PWD/tests/golden/ PMESH_SAMPLE=$dir/a.pmesh
+PMESH_OTHER=$dir/b.pmesh
+export PMESH PMESH_GOLDEN PMESH_SAMPLE PMESH_OTHER
 
-PMESH_GOLDEN=$PWD/tests/golden/ PMESH_SAMPLE=$dir/a.pmesh PMESH_OTHER=$dir/b.pmesh \
-    timeout 120 node --no-warnings --test --test-timeout=60000 --test-reporter=tap $tests/*.test.mjs \
-    >"$dir/tap" 2>&1 || status=$?
-count() {
-    sed -n "s/^# $1 \([0-9]*\)\$/\1/p" "$dir/tap" | tail -n 1
+# Beside the package, where "pmesh" is found.
+mkdir -p $web/node_modules $web/tests
+ln -sfn ../pmesh $web/node_modules/pmesh
+cp tests/web/*.mjs $web/tests
+run_tests $web/tests/*.test.mjs
+
+CHROMIUM=$(command -v chromium || command -v chromium-browser) || {
+    skip "browser skipped, there is no chromium"
+    finish
 }
-passed=$(count pass)
-failed=$(count fail)
-[ "${failed:-1}" = 0 ] || sed -n '/^ *not ok/,/^ *\.\.\./p' "$dir/tap" |
-    head -n 100
-echo "${passed:-0} passed, ${failed:-1} failed"
-[ "${failed:-1}" = 0 ] && [ "$status" = 0 ]
+SHOTS=$PWD/$web/shots
+export CHROMIUM SHOTS
+lock=tests/web/browser/package-lock.json
+if [ "${NPM-}" = 1 ] && ! cmp -s $lock $web/browser/installed; then
+    mkdir -p $web/browser
+    cp tests/web/browser/package.json $lock $web/browser/
+    (cd $web/browser && npm ci --ignore-scripts --no-audit --no-fund --silent) &&
+        cp $lock $web/browser/installed
+fi
+if [ "${NPM-}" = 1 ] || [ -e $web/viewer/installed ]; then
+    tools/web/viewer/build.sh $web/pmesh $web/viewer.html || exit 1
+fi
+if [ ! -e $web/browser/installed ] || [ ! -e $web/viewer.html ]; then
+    skip "browser skipped, playwright-core or the viewer is missing"
+    finish
+fi
+cp tests/web/browser/*.mjs $web/browser/
+run_tests $web/browser/viewer.check.mjs
+finish

@@ -9,7 +9,8 @@ import { Source } from "./source.js";
 
 export { Decoder, PmeshError, Source, ready, supported };
 
-const PIECE = 8192; // fed at a time, so that one step stays short
+// Fed at a time, so that one step stays short; fewer until there is a picture.
+const PIECE = 8192, FIRST_PIECE = 512;
 
 // Resolves when the base mesh can be shown. `input`: URL, Response,
 // ReadableStream, Blob, ArrayBuffer or a view.
@@ -51,7 +52,8 @@ export class Mesh {
             }
             this.#pending = bytes;
         }
-        const piece = this.#pending.subarray(0, PIECE);
+        const piece = this.#pending.subarray(0,
+            this.#decoder.progress.levels > 0 ? PIECE : FIRST_PIECE);
         this.#pending = this.#pending.subarray(piece.length);
         try {
             this.#decoder.feed(piece);
