@@ -210,7 +210,8 @@ web-deps:
 cross-deps:
 	@tests/install-deps.sh cross
 
-headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h
+headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h \
+  decoder/pmesh_plan.h
 lib := $(DESTDIR)$(LIBDIR)
 include := $(DESTDIR)$(PREFIX)/include
 bin := $(DESTDIR)$(PREFIX)/bin

@@ -4,8 +4,8 @@
 #
 # Writes the decoder as two files to drop into another program, FOLDER/
 # pmesh_decode.h and pmesh_decode.c: C99, C11 or C++17. The header is format/
-# pmesh.h and decoder/pmesh_decode.h; the source is all of format/ and decoder/
-# with the internal functions made static. Where two sources use the same name
+# pmesh.h and those of decoder/; the source is all of format/ and decoder/ with
+# the internal functions made static. Where two sources use the same name
 # for something of their own, the name gets that of the source in front.
 #
 # C++ converts no void * by itself: what returns one returns PMESH_UNTYPED
@@ -13,7 +13,7 @@
 set -eu
 folder=$1
 version=$2
-public="format/pmesh.h decoder/pmesh_decode.h"
+public="format/pmesh.h decoder/pmesh_decode.h decoder/pmesh_plan.h"
 mkdir -p "$folder"
 
 about() {
