@@ -216,6 +216,7 @@ lib := $(DESTDIR)$(LIBDIR)
 include := $(DESTDIR)$(PREFIX)/include
 bin := $(DESTDIR)$(PREFIX)/bin
 share := $(DESTDIR)$(PREFIX)/share/pmesh
+completions := $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 man := $(DESTDIR)$(PREFIX)/share/man/man1
 
 ## install: into PREFIX (/usr/local) below DESTDIR
@@ -223,12 +224,15 @@ install: all
 	install -d $(bin) $(man) $(include) $(lib)/pkgconfig
 	install -m 755 $(B)/pmesh $(bin)
 	install -m 644 tools/pmesh.1 $(man)
+	install -d $(share) $(completions)
+	install -m 644 tools/pmesh.bash $(completions)/pmesh
+	install -m 644 tools/python/pmesh.py $(share)
 	install -m 644 $(B)/libpmesh.a $(B)/libpmesh-dec.a $(lib)
 	install -m 755 $(B)/libpmesh.so $(lib)/libpmesh.so.$(version)
 	ln -sf libpmesh.so.$(version) $(lib)/$(soname)
 	ln -sf $(soname) $(lib)/libpmesh.so
 	if [ -e build/web/viewer.html ]; then \
-	  install -d $(share) && install -m 644 build/web/viewer.html $(share); \
+	  install -m 644 build/web/viewer.html $(share); \
 	else echo "no page for pmesh view: 'make viewer' makes it"; fi
 	for h in $(headers); do sed 's|#include "format/|#include "|' $$h \
 	  >$(include)/$${h##*/}; done
@@ -238,6 +242,7 @@ install: all
 ## uninstall: remove what install put there
 uninstall:
 	rm -f $(bin)/pmesh $(man)/pmesh.1 $(share)/viewer.html
+	rm -f $(completions)/pmesh $(share)/pmesh.py
 	rm -f $(addprefix $(include)/,$(notdir $(headers)))
 	rm -f $(lib)/libpmesh.a $(lib)/libpmesh-dec.a $(lib)/libpmesh.so*
 	rm -f $(lib)/pkgconfig/pmesh.pc
