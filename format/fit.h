@@ -15,7 +15,7 @@
 #include <stdint.h>
 
 enum {
-    PMESH_FIT_TERMS = 8,
+    PMESH_FIT_TERMS = 7,
     PMESH_FIT_PAIRS = PMESH_FIT_TERMS * (PMESH_FIT_TERMS + 1) / 2
 };
 

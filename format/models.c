@@ -56,6 +56,8 @@ static void cut_init(pmesh_cut_weights *w, const pmesh_tables *start)
 {
     weights_init((int32_t *)w->shape, start->shape, COUNT(w->shape, int32_t),
                  4);
+    weights_init((int32_t *)w->reach, start->reach, COUNT(w->reach, int32_t),
+                 4);
     weights_init((int32_t *)w->degree, start->degree, COUNT(w->degree, int32_t),
                  256);
     weights_init((int32_t *)w->state, start->state, COUNT(w->state, int32_t),

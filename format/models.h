@@ -49,6 +49,7 @@ typedef struct pmesh_wedge_models {
  * 1/4096 bit, the rest in 1/65536. */
 typedef struct pmesh_cut_weights {
     int32_t shape[3][2][PMESH_CUT_TERMS];
+    int32_t reach[2][2];
     int32_t degree[2][PMESH_CUT_DEGREES];
     int32_t state[2][PMESH_STATES][PMESH_STATES][PMESH_STATES];
     int32_t span[2][PMESH_CUT_RINGS][PMESH_CUT_SPANS];

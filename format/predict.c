@@ -8,14 +8,27 @@
 enum {
     FRACTION_BITS = 4,
     WEIGHT_BITS = 16,
-    TERM_LIMIT = 1 << 18, /* four times what a ring can span */
-    SUM_LIMIT = 1 << 26,
-    FIT_DROP = 5 /* bits of terms that learning does without */
+    TERM_LIMIT = 1 << 14, /* four times what a ring can span */
+    SUM_LIMIT = 1 << 22,
+    FIT_DROP = 1 /* bits of terms that learning does without */
 };
 
 static int64_t limited(int64_t value, int64_t limit)
 {
     return value < -limit ? -limit : value > limit ? limit : value;
+}
+
+static int32_t within(int32_t value, int32_t limit)
+{
+    return value < -limit ? -limit : value > limit ? limit : value;
+}
+
+/* x 2^shift within SUM_LIMIT; shift <= PMESH_STAR_BITS. */
+static int32_t scaled(int32_t value, int shift)
+{
+    if (shift < 0)
+        return within(value >> -shift, SUM_LIMIT);
+    return within(value, SUM_LIMIT >> shift) * (1 << shift);
 }
 
 static uint32_t index_of(const pmesh_ring *ring, uint32_t vertex)
@@ -29,36 +42,35 @@ static uint32_t index_of(const pmesh_ring *ring, uint32_t vertex)
 /* ---- terms, from the ring's mean ---------------------------------------- */
 
 /* Mean over the ring of (mean of a member's other neighbours - member): how
- * the surface bends around here. */
+ * the surface bends around here. Sums of positions relative to `base` fit 32
+ * bits. */
 static void bend(const pmesh_codec *c, const pmesh_star *s,
                  const pmesh_ring *ring, uint32_t x, const int32_t base[3],
-                 int64_t out[3])
+                 int32_t out[3])
 {
     const int32_t *at = c->mesh.position[x];
-    int64_t sum[3] = { 0, 0, 0 };
+    int32_t sum[3] = { 0, 0, 0 };
     uint32_t used = 0;
     for (uint32_t i = 0; i < ring->count; i++) {
         const uint32_t y = ring->vertex[i], others = c->degree[y] - 1;
         if (others < 2 || others >= PMESH_MAX_RING)
             continue;
         for (int k = 0; k < 3; k++) {
-            const int64_t all = (int64_t)(int32_t)c->around[y][k] - at[k] -
-                                (int64_t)others * base[k];
-            sum[k] +=
-                pmesh_share(limited(pmesh_scale(all, s->shift), SUM_LIMIT),
-                            others) -
-                s->point[i][k];
+            const uint32_t all =
+                c->around[y][k] - (uint32_t)at[k] - others * (uint32_t)base[k];
+            sum[k] += pmesh_share(scaled((int32_t)all, s->shift), others) -
+                      s->point[k][i];
         }
         used++;
     }
     for (int k = 0; k < 3; k++)
-        out[k] = used ? pmesh_share(limited(sum[k], SUM_LIMIT), used) : 0;
+        out[k] = used ? pmesh_share(sum[k], used) : 0;
 }
 
 /* Straight on from the member behind half-edge h, away from where h starts:
  * twice the member less what lies opposite in its ring. */
 static void straight_on(const pmesh_codec *c, const pmesh_star *s, uint32_t h,
-                        const int32_t base[3], int64_t out[3])
+                        const int32_t base[3], int32_t out[3])
 {
     const pmesh_mesh *m = &c->mesh;
     const uint32_t y = m->vertex[pmesh_next(h)], n = c->degree[y];
@@ -75,10 +87,9 @@ static void straight_on(const pmesh_codec *c, const pmesh_star *s, uint32_t h,
     if (n % 2 == 0)
         far[0] = far[1];
     for (int k = 0; k < 3; k++) {
-        const int64_t twice = 4 * (int64_t)m->position[y][k] -
-                              m->position[far[0]][k] - m->position[far[1]][k] -
-                              2 * (int64_t)base[k];
-        out[k] = (pmesh_scale(twice, s->shift) >> 1) - s->mean[k];
+        const int32_t twice = 4 * m->position[y][k] - m->position[far[0]][k] -
+                              m->position[far[1]][k] - 2 * base[k];
+        out[k] = (scaled(twice, s->shift) >> 1) - s->mean[k];
     }
 }
 
@@ -87,30 +98,28 @@ static void make_terms(const pmesh_codec *c, const pmesh_star *s,
                        pmesh_prediction *p)
 {
     const uint32_t n = s->count, at = index_of(ring, partner);
-    const uint32_t far = (at + n / 2) % n, far2 = (at + (n + 1) / 2) % n;
-    uint32_t a = at + 1 < n ? at + 1 : 0, b = at > 0 ? at - 1 : n - 1;
-    if (s->open) { /* the boundary says more than the wings */
-        a = 0;
-        b = n - 1;
-    }
+    const uint32_t half = at + n / 2, half2 = at + (n + 1) / 2;
+    const uint32_t far = half < n ? half : half - n;
+    const uint32_t far2 = half2 < n ? half2 : half2 - n;
+    /* Of an open ring the ends say more than what lies opposite. */
+    const uint32_t a = s->open ? 0 : far, b = s->open ? n - 1 : far2;
     for (int k = 0; k < 3; k++) {
+        const int16_t *point = s->point[k];
         p->term[0][k] = -s->mean[k]; /* the partner is the base point */
-        p->term[1][k] = ((s->point[a][k] + s->point[b][k]) >> 1) - s->mean[k];
-        p->term[2][k] =
-            ((s->point[far][k] + s->point[far2][k]) >> 1) - s->mean[k];
+        p->term[1][k] = ((point[a] + point[b]) >> 1) - s->mean[k];
     }
-    bend(c, s, ring, x, p->base, p->term[3]);
-    pmesh_star_centres(s, p->term[4], p->term[5]);
-    memset(p->term[6], 0, 2 * sizeof p->term[6]);
+    bend(c, s, ring, x, p->base, p->term[2]);
+    pmesh_star_centres(s, p->term[3], p->term[4]);
+    memset(p->term[5], 0, 2 * sizeof p->term[5]);
     if (at < ring->face_count)
-        straight_on(c, s, ring->edge[at], p->base, p->term[6]);
+        straight_on(c, s, ring->edge[at], p->base, p->term[5]);
     if (far < ring->face_count)
-        straight_on(c, s, ring->edge[far], p->base, p->term[7]);
+        straight_on(c, s, ring->edge[far], p->base, p->term[6]);
 
     for (int t = 0; t < PMESH_FIT_TERMS; t++) {
-        int64_t height = 0;
+        int32_t height = 0;
         for (int k = 0; k < 3; k++) {
-            p->term[t][k] = limited(p->term[t][k], TERM_LIMIT);
+            p->term[t][k] = within(p->term[t][k], TERM_LIMIT);
             height += p->term[t][k] * s->normal[k];
         }
         p->height[t] = height >> PMESH_NORMAL_BITS;
@@ -142,8 +151,8 @@ static uint8_t ring_class(const pmesh_ring *ring)
 /* Two classes an octave of height against size, from 1/256 on. */
 static uint8_t roughness(const pmesh_star *s)
 {
-    const uint64_t part = 256 * (uint64_t)s->height / (uint64_t)(s->size + 1);
-    const unsigned bits = pmesh_bit_length(part * part);
+    const uint32_t part = 256 * (uint32_t)s->height / (uint32_t)(s->size + 1);
+    const unsigned bits = pmesh_bit_length((uint64_t)part * part);
     return (uint8_t)(bits < PMESH_ROUGH ? bits : PMESH_ROUGH - 1);
 }
 
@@ -167,7 +176,7 @@ static void classify(const pmesh_codec *c, const pmesh_star *s,
     p->size = size < 16 ? 16 : (uint32_t)size;
     p->shift = s->shift;
     for (int k = 0; k < 3; k++) {
-        p->normal[k] = (int32_t)s->normal[k];
+        p->normal[k] = s->normal[k];
         p->mean[k] = s->mean[k];
     }
 }
@@ -179,14 +188,14 @@ static void add_terms(pmesh_prediction *p, const int32_t bounds[3])
     int64_t sum[3] = { 0, 0, 0 }, height = 0;
     for (int t = 0; t < PMESH_FIT_TERMS; t++) {
         for (int k = 0; k < 3; k++)
-            sum[k] += along[t] * p->term[t][k];
+            sum[k] += (int64_t)along[t] * p->term[t][k];
         height += (int64_t)(across[t] - along[t]) * p->height[t];
     }
     for (int k = 0; k < 3; k++) {
-        p->corrected[k] =
-            p->mean[k] +
-            ((sum[k] + (height * p->normal[k] >> PMESH_NORMAL_BITS)) >>
-             WEIGHT_BITS);
+        const int64_t by =
+            (sum[k] + (height * p->normal[k] >> PMESH_NORMAL_BITS)) >>
+            WEIGHT_BITS;
+        p->corrected[k] = p->mean[k] + (int32_t)by;
         const int64_t x =
             (int64_t)p->base[k] * (1 << FRACTION_BITS) +
             pmesh_scale(p->corrected[k], FRACTION_BITS - p->shift);

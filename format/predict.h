@@ -34,8 +34,8 @@ typedef struct pmesh_prediction {
     pmesh_fit *fit; /* along, across; NULL if the ring was too large */
     int shift;
     int32_t base[3];
-    int64_t mean[3], corrected[3];
-    int64_t term[PMESH_FIT_TERMS][3], height[PMESH_FIT_TERMS];
+    int32_t mean[3], corrected[3];
+    int32_t term[PMESH_FIT_TERMS][3], height[PMESH_FIT_TERMS];
 } pmesh_prediction;
 
 /* The position of x, whose ring is given; ring NULL: it is too large.

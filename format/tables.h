@@ -11,7 +11,7 @@
 
 enum {
     /* Cuts. */
-    PMESH_CUT_TERMS = 5,   /* spread, off-centre, reach, wing angle, stray */
+    PMESH_CUT_TERMS = 2,   /* off-centre, stray */
     PMESH_CUT_DEGREES = 12,
     PMESH_CUT_SPANS = 10,
     PMESH_CUT_RINGS = 14,
@@ -25,7 +25,7 @@ enum {
     /* Positions: subset child, moved child, moved parent; class of ring. */
     PMESH_PREDICT_KINDS = 3,
     PMESH_PREDICT_CLASSES = 9,
-    PMESH_PREDICT_TERMS = 8,
+    PMESH_PREDICT_TERMS = 7,
     PMESH_UNKNOWN = 3,     /* provisional neighbours: 0, 1, more */
     PMESH_IRREGULAR = 5,   /* irregular neighbours: 0 .. 3, more */
     PMESH_ROUGH = 14,      /* how far a ring is from plane */
@@ -41,6 +41,7 @@ typedef struct pmesh_tables {
     /* Weights of a cut's shape in 1/1024 bit: [closed, open, ghost wing][no
      * newborn in the ring, some][term]. */
     int16_t shape[3 * 2 * PMESH_CUT_TERMS];
+    int16_t reach[2 * 2]; /* of wings: [closed, open][..] */
     /* And of what it meets, in 1/256 bit: [wing a, b][...]; [ghost wing]. */
     int16_t degree[2 * PMESH_CUT_DEGREES];
     int16_t state[2 * PMESH_STATES * PMESH_STATES * PMESH_STATES];

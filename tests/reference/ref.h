@@ -26,7 +26,7 @@ enum {
     REF_COMPONENTS = 4,
     REF_VALUES = REF_ATTRIBUTES * REF_COMPONENTS,
     REF_LEVELS = 64,
-    REF_TERMS = 8 /* of the prediction */
+    REF_TERMS = 7 /* of the prediction */
 };
 
 /* ---- 6.1 entropy coding ------------------------------------------------- */
@@ -173,7 +173,7 @@ typedef struct ref_base_models {
 } ref_base_models;
 
 typedef struct ref_cut_models {
-    int32_t shape[3][2][5], span[2][14][10], degree[2][12],
+    int32_t shape[3][2][2], reach[2][2], span[2][14][10], degree[2][12],
         state[2][5][5][5];
     ref_model rank[2][4][32];
 } ref_cut_models;
@@ -362,7 +362,8 @@ uint32_t ref_face_components(const ref_header *h); /* of all attributes */
 
 /* ---- appendix C, generated from SPEC.md --------------------------------- */
 
-extern const int ref_SHAPE[], ref_DEGREE[], ref_STATE[], ref_SPAN[],
+extern const int ref_SHAPE[], ref_REACH[], ref_DEGREE[], ref_STATE[],
+    ref_SPAN[],
     ref_PREDICT[], ref_ALONG[], ref_ACROSS[], ref_FLAG[], ref_RANK[],
     ref_RESIDUAL[], ref_LOW[];
 

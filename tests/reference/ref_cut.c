@@ -7,18 +7,17 @@
 typedef struct option {
     ref_cut cut;
     int span;
-    int64_t term[5], cost, share;
-    int32_t *place[5]; /* weights that hold for this option */
-    int places;
+    int64_t term[2], cost, share;
 } option;
 
 typedef struct options {
     const ref *r;
     const ref_ring *ring;
     bool newborn; /* is a neighbour? */
-    ref_vec x[REF_MEMBERS], drift;
-    int64_t square[REF_MEMBERS]; /* |x|^2 */
-    int64_t per;
+    int b;        /* bits(n) */
+    ref_vec y[REF_MEMBERS], x[REF_MEMBERS], drift;
+    int64_t reach[REF_MEMBERS]; /* T(y) */
+    int64_t per, far;
     int count;
     option option[REF_MEMBERS * REF_MEMBERS];
 } options;
@@ -49,42 +48,68 @@ static void list_options(options *o)
 
 /* ---- geometry ----------------------------------------------------------- */
 
+static int64_t sq(ref_vec v)
+{
+    int64_t sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum += ref_shift(v.c[k] * v.c[k], 16);
+    return sum;
+}
+
+static int64_t cut_term(const options *o, ref_vec v)
+{
+    const int64_t square = sq(v);
+    return ref_shift((square < o->far ? square : o->far) * o->per, 16);
+}
+
+static void set_drift(options *o, int s)
+{
+    ref_vec sum = { 0 };
+    int64_t newborn = 0;
+    for (int i = 0; i < o->ring->count; i++) {
+        const ref_vertex *z = &o->r->vertex[o->ring->vertex[i]];
+        if (z->state != REF_NEWBORN)
+            continue;
+        newborn++;
+        sum = ref_add(sum, ref_sub(z->at, o->r->vertex[z->parent].at));
+    }
+    o->newborn = newborn > 0;
+    if (!o->newborn)
+        return;
+    sum = ref_vwithin(ref_over(ref_vscale(sum, s), newborn), 1 << 13);
+    o->drift = ref_vshift(sum, o->b);
+}
+
 static void scale_ring(options *o, uint32_t v)
 {
     const ref *r = o->r;
     const int n = o->ring->count;
-    const ref_vec at = r->vertex[v].at;
     uint64_t all = 0;
+    int64_t sum = 0;
+    o->b = ref_bits((uint64_t)n);
     for (int i = 0; i < n; i++) {
-        o->x[i] = ref_sub(r->vertex[o->ring->vertex[i]].at, at);
-        all |= ref_or(o->x[i]);
+        o->y[i] = ref_sub(r->vertex[o->ring->vertex[i]].at, r->vertex[v].at);
+        all |= ref_or(o->y[i]);
     }
-    const int s = 13 - ref_bits((uint64_t)n) - ref_bits(all);
-    ref_vec drift = { 0 };
-    int64_t newborn = 0, sum = 0;
+    const int s = 14 - ref_bits(all);
     for (int i = 0; i < n; i++) {
-        const ref_vertex *z = &r->vertex[o->ring->vertex[i]];
-        o->x[i] = ref_vscale(o->x[i], s);
-        o->square[i] = ref_dot(o->x[i], o->x[i]);
-        sum += o->square[i];
-        if (z->state == REF_NEWBORN) {
-            newborn++;
-            drift = ref_add(drift,
-                            ref_sub(z->at, r->vertex[z->parent].at));
-        }
+        o->y[i] = ref_vscale(o->y[i], s);
+        o->x[i] = ref_vshift(o->y[i], o->b);
+        sum += sq(o->y[i]);
     }
-    o->newborn = newborn > 0;
-    if (o->newborn)
-        o->drift =
-            ref_vwithin(ref_over(ref_vscale(drift, s), newborn), 1 << 13);
-    const int64_t size = sum / n;
-    o->per = (1 << 27) / (size > 1 << 15 ? size : 1 << 15);
+    const int64_t size = sum / n > 513 ? sum / n : 513;
+    o->per = (1 << 24) / size;
+    o->far = (int64_t)2047 * 65536 / o->per;
+    if (o->far > 32767)
+        o->far = 32767;
+    for (int i = 0; i < n; i++)
+        o->reach[i] = cut_term(o, o->y[i]);
+    set_drift(o, s);
 }
 
-static int64_t cut_term(const options *o, int64_t square)
+static int64_t part_in(int64_t k)
 {
-    const int64_t t = ref_shift(ref_shift(square, 10) * o->per, 9);
-    return ref_within(t, 32767);
+    return 65536 / k < 32767 ? 65536 / k : 32767;
 }
 
 static void set_terms(const options *o, option *p)
@@ -97,26 +122,20 @@ static void set_terms(const options *o, option *p)
     const ref_vec xa = wing_a ? o->x[p->cut.first] : zero;
     const ref_vec xb = wing_b ? o->x[p->cut.end] : zero;
     ref_vec all = zero, part = zero;
-    int64_t squares = 0;
     for (int i = 0; i < n; i++)
         all = ref_add(all, o->x[i]);
-    for (int i = 0; i <= p->span; i++) {
+    for (int i = 0; i <= p->span; i++)
         part = ref_add(part, o->x[(from + i) % n]);
-        squares += o->square[(from + i) % n];
-    }
-    const int64_t inside = 32768 / (p->span + 2);
-    const int64_t outside = 32768 / (n - p->span + wing_a + wing_b);
-    const ref_vec mean = ref_vshift(ref_times(part, inside), 15);
+    const ref_vec mean = ref_vshift(ref_times(part, part_in(p->span + 2)), 16);
     ref_vec rest = ref_sub(all, part);
     rest = ref_add(ref_add(rest, xa), ref_add(xb, mean));
-    rest = ref_vshift(ref_times(rest, outside), 15);
-    const int64_t spread = ref_shift(ref_shift(squares, 9) * inside, 6);
-    const ref_vec off = ref_sub(mean, o->drift);
-    p->term[0] = cut_term(o, spread - ref_dot(mean, mean));
-    p->term[1] = cut_term(o, ref_dot(rest, rest));
-    p->term[2] = cut_term(o, ref_dot(xa, xa) + ref_dot(xb, xb));
-    p->term[3] = cut_term(o, ref_dot(xa, xb));
-    p->term[4] = o->newborn ? cut_term(o, ref_dot(off, off)) : 0;
+    rest =
+        ref_vshift(ref_times(rest, part_in(n - p->span + wing_a + wing_b)), 16);
+    const int64_t up = (int64_t)1 << o->b;
+    p->term[0] = cut_term(o, ref_times(rest, up));
+    p->term[1] = 0;
+    if (o->newborn)
+        p->term[1] = cut_term(o, ref_times(ref_sub(mean, o->drift), up));
 }
 
 /* ---- cost --------------------------------------------------------------- */
@@ -134,16 +153,18 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-/* Wing i on a side: 0 looks forward around the ring, 1 back. */
-static void add_wing(ref_cut_models *m, const options *o, option *p, int side,
-                     int i)
+static int32_t *degree_of(ref_cut_models *m, const options *o, int side, int i)
+{
+    const uint32_t degree = ref_degree(o->r, o->ring->vertex[i]);
+    return &m->degree[side][degree < 11 ? degree : 11];
+}
+
+/* A side looks at the ring in its own direction: 0 forward, 1 back. */
+static int32_t *states_of(ref_cut_models *m, const options *o, int side, int i)
 {
     const int step = side == 0 ? 1 : -1;
-    const uint32_t degree = ref_degree(o->r, o->ring->vertex[i]);
-    p->place[p->places++] = &m->degree[side][degree < 11 ? degree : 11];
-    p->place[p->places++] =
-        &m->state[side][state_at(o, i - step)][state_at(o, i)]
-                 [state_at(o, i + step)];
+    return &m->state[side][state_at(o, i - step)][state_at(o, i)]
+                    [state_at(o, i + step)];
 }
 
 static bool has_ghost(const option *p)
@@ -151,34 +172,43 @@ static bool has_ghost(const option *p)
     return p->cut.first == REF_GHOST_WING || p->cut.end == REF_GHOST_WING;
 }
 
-static int32_t *shape_of(ref_cut_models *m, const options *o, const option *p)
+static int32_t *span_of(ref_cut_models *m, const options *o, const option *p)
 {
-    const int g = has_ghost(p) ? 2 : o->ring->open ? 1 : 0;
-    return m->shape[g][o->newborn];
+    return &m->span[has_ghost(p)][least(o->ring->count, 13)][least(p->span, 9)];
+}
+
+static int wings_kind(const options *o, const option *p)
+{
+    return has_ghost(p) ? 2 : o->ring->open ? 1 : 0;
+}
+
+static int64_t wing_cost(ref_cut_models *m, const options *o, int side, int i)
+{
+    const int64_t reach =
+        ref_shift(m->reach[o->ring->open][o->newborn], 4) * o->reach[i];
+    return ref_within(
+        ref_shift(reach + *degree_of(m, o, side, i) + *states_of(m, o, side, i),
+                  10),
+        5000);
 }
 
 static void set_cost(ref_cut_models *m, const options *o, option *p)
 {
-    const int32_t *w = shape_of(m, o, p);
-    int64_t sum = 0, place = 0;
-    p->place[p->places++] =
-        &m->span[has_ghost(p)][least(o->ring->count, 13)][least(p->span, 9)];
+    const int32_t *w = m->shape[wings_kind(o, p)][o->newborn];
+    p->cost = ref_within(ref_shift(*span_of(m, o, p), 10), 5000);
     if (p->cut.first != REF_GHOST_WING)
-        add_wing(m, o, p, 0, p->cut.first);
+        p->cost += wing_cost(m, o, 0, p->cut.first);
     if (p->cut.end != REF_GHOST_WING)
-        add_wing(m, o, p, 1, p->cut.end);
-    for (int t = 0; t < 5; t++)
-        sum += ref_shift(w[t], 4) * p->term[t];
-    for (int i = 0; i < p->places; i++)
-        place += *p->place[i];
-    p->cost = ref_shift(ref_shift(sum, 4) + ref_shift(place, 4), 8);
+        p->cost += wing_cost(m, o, 1, p->cut.end);
+    for (int t = 0; t < 2; t++)
+        p->cost += ref_shift(ref_shift(w[t], 2) * 16 * p->term[t], 16);
 }
 
-/* PART[i], the nearest integer of 65536 x 2^(-i / 16); no power is near a half,
+/* PART[i], the nearest integer of 32768 x 2^(-i / 16); no power is near a half,
  * so any machine's pow() gives it. */
 static int64_t part_of(int i)
 {
-    return (int64_t)floor(65536 * pow(2, -i / 16.0) + 0.5);
+    return (int64_t)floor(32768 * pow(2, -i / 16.0) + 0.5);
 }
 
 static int64_t set_shares(options *o)
@@ -190,7 +220,7 @@ static int64_t set_shares(options *o)
     for (int i = 0; i < o->count; i++) {
         const int64_t e = o->option[i].cost - lowest;
         o->option[i].share =
-            e >= 272 ? 0 : part_of((int)(e % 16)) / ((int64_t)1 << e / 16);
+            e >= 1024 ? 0 : part_of((int)(e / 4 % 16)) / ((int64_t)1 << e / 64);
         sum += o->option[i].share;
     }
     return sum;
@@ -219,8 +249,8 @@ static int read_rank(ref *r, const options *o, int64_t left)
         const int64_t share = o->option[best].share;
         if (share == 0)
             REF_SEEN(cut_share_0);
-        const int k = (int)ref_clamp(
-            height(share) - height(left - share) + 12, 0, 31);
+        const int k =
+            (int)ref_clamp(height(share) - height(left - share) + 12, 0, 31);
         if (rank > 3)
             REF_SEEN(cut_rank_above_3);
         if (!ref_bit(&r->in, &r->cut.rank[o->ring->open][least(rank, 3)][k]))
@@ -230,28 +260,81 @@ static int read_rank(ref *r, const options *o, int64_t left)
     }
 }
 
+/* ---- learning ----------------------------------------------------------- */
+
+static void change(int32_t *weight, int64_t by, int64_t limit)
+{
+    *weight = (int32_t)ref_within(*weight - by, limit);
+}
+
+static void learn_shape(ref_cut_models *m, const options *o,
+                        const int64_t *error)
+{
+    for (int g = 0; g < 3; g++)
+        for (int t = 0; t < 2; t++) {
+            int64_t sum = 0;
+            for (int i = 0; i < o->count; i++)
+                if (wings_kind(o, &o->option[i]) == g)
+                    sum += error[i] * o->option[i].term[t];
+            change(&m->shape[g][o->newborn][t], sum / 512, 65535);
+        }
+}
+
+static void learn_spans(ref_cut_models *m, const options *o,
+                        const int64_t *error)
+{
+    for (int span = 1; span < o->ring->count; span++) {
+        const option *any = NULL;
+        int64_t sum = 0;
+        for (int i = 0; i < o->count; i++) {
+            const option *p = &o->option[i];
+            if (has_ghost(p) || p->span != span)
+                continue;
+            sum += error[i];
+            any = p;
+        }
+        if (any)
+            change(span_of(m, o, any), sum, 1 << 26);
+    }
+    for (int i = 0; i < o->count; i++)
+        if (has_ghost(&o->option[i]))
+            change(span_of(m, o, &o->option[i]), error[i], 1 << 26);
+}
+
+static void learn_wings(ref_cut_models *m, const options *o,
+                        const int64_t *error)
+{
+    int64_t reach = 0;
+    for (int i = 0; i < o->ring->count; i++)
+        for (int side = 0; side < 2; side++) {
+            int64_t sum = 0;
+            for (int k = 0; k < o->count; k++) {
+                const ref_cut *cut = &o->option[k].cut;
+                if ((side == 0 ? cut->first : cut->end) == i)
+                    sum += error[k];
+            }
+            change(degree_of(m, o, side, i), sum, 1 << 26);
+            change(states_of(m, o, side, i), sum, 1 << 26);
+            reach += sum * o->reach[i];
+        }
+    change(&m->reach[o->ring->open][o->newborn], reach / 512, 65535);
+}
+
 static void learn(ref_cut_models *m, const options *o, int chosen, int64_t sum)
 {
-    for (int i = 0; i < o->count; i++) {
-        const option *p = &o->option[i];
-        const int64_t error =
+    int64_t error[REF_MEMBERS * REF_MEMBERS];
+    for (int i = 0; i < o->count; i++)
+        error[i] =
             (i == chosen ? 4096 : 0) -
-            ref_shift(p->share * (((int64_t)1 << 40) / sum), 28);
-        if (error < 4 && error > -4)
-            continue;
-        int32_t *w = shape_of(m, o, p);
-        for (int t = 0; t < 5; t++)
-            w[t] = (int32_t)ref_within(w[t] - error * p->term[t] / 512,
-                                       1 << 17);
-        for (int k = 0; k < p->places; k++)
-            *p->place[k] =
-                (int32_t)ref_within(*p->place[k] - error, 1 << 26);
-    }
+            ref_shift(o->option[i].share * (((int64_t)1 << 28) / sum), 16);
+    learn_shape(m, o, error);
+    learn_spans(m, o, error);
+    learn_wings(m, o, error);
 }
 
 ref_cut ref_read_cut(ref *r, uint32_t v, const ref_ring *ring)
 {
-    static options o; /* half a megabyte */
+    static options o; /* a tenth of a megabyte */
     o.r = r;
     o.ring = ring;
     o.drift = (ref_vec){ 0 };

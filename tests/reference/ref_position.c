@@ -34,7 +34,7 @@ static int64_t len(ref_vec v)
         m = a > m ? a : m;
         sum += a;
     }
-    return m + (sum - m) * 3 / 8;
+    return m + ref_shift(sum - m, 2) + ref_shift(sum - m, 3);
 }
 
 static int64_t isqrt(int64_t v)
@@ -68,7 +68,7 @@ static void set_edges(frame *m)
         if (m->ring->vertex[i] == m->y)
             m->j = i;
     }
-    m->s = 16 - ref_bits(all);
+    m->s = 12 - ref_bits(all);
     for (int i = 0; i < m->n; i++) {
         m->e[i] = ref_vscale(m->e[i], m->s);
         sum = ref_add(sum, m->e[i]);
@@ -87,7 +87,7 @@ static void set_normal(frame *m)
         m->f[i] = ref_cross(m->d[i], m->d[(i + 1) % m->n]);
         sum = ref_add(sum, m->f[i]);
     }
-    const int drop = ref_bits(ref_or(sum)) - 24;
+    const int drop = ref_bits(ref_or(sum)) - 15;
     if (drop > 0)
         sum = ref_vshift(sum, drop);
     const int64_t length = isqrt(ref_dot(sum, sum));
@@ -96,7 +96,7 @@ static void set_normal(frame *m)
         return;
     }
     m->normal =
-        ref_vshift(ref_times(sum, ((int64_t)1 << 38) / length), 24);
+        ref_vshift(ref_times(sum, ((int64_t)1 << 29) / length), 15);
 }
 
 static void set_contexts(const frame *m, ref_prediction *p,
@@ -131,19 +131,6 @@ static ref_vec half_sum(const frame *m, int64_t a, int64_t b)
     return ref_sub(ref_vshift(ref_add(m->e[a], m->e[b]), 1), m->mean);
 }
 
-static ref_vec beside(const frame *m)
-{
-    int64_t a = m->j + 1, b = m->j - 1;
-    if (m->ring->open) {
-        a = 0;
-        b = m->n - 1;
-    } else {
-        a = a % m->n;
-        b = (b + m->n) % m->n;
-    }
-    return half_sum(m, a, b);
-}
-
 /* How z's other neighbours lie around z. */
 static ref_vec bend_at(const frame *m, int i, int64_t k)
 {
@@ -153,7 +140,7 @@ static ref_vec bend_at(const frame *m, int i, int64_t k)
         if (ring.vertex[c] != m->x)
             sum = ref_add(sum, m->r->vertex[ring.vertex[c]].at);
     sum = ref_sub(sum, ref_times(m->q, k));
-    sum = ref_vwithin(ref_vscale(sum, m->s), 1 << 26);
+    sum = ref_vwithin(ref_vscale(sum, m->s), 1 << 22);
     return ref_sub(vshare(sum, k), m->e[i]);
 }
 
@@ -171,7 +158,7 @@ static ref_vec bend(const frame *m)
         sum = ref_add(sum, bend_at(m, i, k));
         count++;
     }
-    return count > 0 ? vshare(ref_vwithin(sum, 1 << 26), count) : sum;
+    return count > 0 ? vshare(sum, count) : sum;
 }
 
 static ref_vec centre(const int64_t *g, const ref_vec *v, int count,
@@ -187,7 +174,7 @@ static ref_vec centre(const int64_t *g, const ref_vec *v, int count,
         REF_SEEN(centre_0);
         return (ref_vec){ 0 };
     }
-    return ref_vshift(ref_times(sum, ((int64_t)1 << 38) / (k * all)), 38);
+    return ref_vshift(ref_times(sum, ((int64_t)1 << 31) / (k * all)), 31);
 }
 
 static ref_vec centre_of_faces(const frame *m)
@@ -200,10 +187,18 @@ static ref_vec centre_of_faces(const frame *m)
         v[i] = ref_add(m->d[i], m->d[(i + 1) % m->n]);
         all |= (uint64_t)g[i];
     }
-    const int drop = ref_bits(all) - 18;
+    const int drop = ref_bits(all) - 11;
     for (int i = 0; i < faces_of(m) && drop > 0; i++)
         g[i] = ref_shift(g[i], drop);
     return centre(g, v, faces_of(m), 3);
+}
+
+static ref_vec centre_of_spokes(const frame *m)
+{
+    int64_t g[REF_MEMBERS];
+    for (int i = 0; i < m->n; i++)
+        g[i] = ref_shift(m->l[i], 3);
+    return centre(g, m->d, m->n, 1);
 }
 
 /* Straight on through z, neighbour i. */
@@ -239,15 +234,14 @@ static void set_terms(const frame *m, ref_prediction *p)
     const int n = m->n;
     const int64_t c = (m->j + n / 2) % n, c2 = (m->j + (n + 1) / 2) % n;
     p->t[0] = ref_sub((ref_vec){ 0 }, m->mean);
-    p->t[1] = beside(m);
-    p->t[2] = half_sum(m, c, c2);
-    p->t[3] = bend(m);
-    p->t[4] = centre_of_faces(m);
-    p->t[5] = centre(m->l, m->d, n, 1);
-    p->t[6] = straight(m, m->j);
-    p->t[7] = straight(m, c);
+    p->t[1] = m->ring->open ? half_sum(m, 0, n - 1) : half_sum(m, c, c2);
+    p->t[2] = bend(m);
+    p->t[3] = centre_of_faces(m);
+    p->t[4] = centre_of_spokes(m);
+    p->t[5] = straight(m, m->j);
+    p->t[6] = straight(m, c);
     for (int t = 0; t < REF_TERMS; t++) {
-        p->t[t] = ref_vwithin(p->t[t], 1 << 18);
+        p->t[t] = ref_vwithin(p->t[t], 1 << 14);
         p->h[t] = along_normal(p->t[t], m->normal);
     }
 }
@@ -337,7 +331,7 @@ static void take_in(ref_fit *fit, int which, const ref_vec *f, ref_vec y,
 
 static int64_t squared(const ref_prediction *p, int64_t v)
 {
-    const int64_t x = ref_within(ref_scale(v, p->s - 9), 1 << 18);
+    const int64_t x = ref_within(ref_scale(v, p->s - 5), 1 << 14);
     return x * x;
 }
 
@@ -347,24 +341,24 @@ void ref_learn(ref *r, const ref_prediction *p, ref_vec final)
         return;
     ref_fit *fit = &r->fit[p->kind][p->class][p->unknown];
     const ref_vec D = ref_vscale(ref_sub(final, p->q), p->s);
-    const ref_vec E = ref_vwithin(ref_sub(D, p->predicted), 1 << 18);
-    const ref_vec G = ref_vwithin(ref_sub(D, p->mean), 1 << 18);
+    const ref_vec E = ref_vwithin(ref_sub(D, p->predicted), 1 << 14);
+    const ref_vec G = ref_vwithin(ref_sub(D, p->mean), 1 << 14);
     const int64_t eu = along_normal(E, p->normal);
     const int64_t up = along_normal(G, p->normal);
-    const int64_t eh = ref_shift(eu * eu, 10);
+    const int64_t eh = ref_shift(eu * eu, 2);
     const int64_t ef =
-        ref_clamp(ref_shift(ref_dot(E, E), 10) - eh, 0, INT32_MAX);
+        ref_clamp(ref_shift(ref_dot(E, E), 2) - eh, 0, INT32_MAX);
     ref_vec flat[REF_TERMS], high[REF_TERMS];
     for (int t = 0; t < REF_TERMS; t++) {
         const ref_vec part = ref_vshift(ref_times(p->normal, p->h[t]), 14);
-        flat[t] = ref_vshift(ref_sub(p->t[t], part), 5);
-        high[t] = (ref_vec){ { ref_shift(p->h[t], 5) } };
+        flat[t] = ref_vshift(ref_sub(p->t[t], part), 1);
+        high[t] = (ref_vec){ { ref_shift(p->h[t], 1) } };
     }
     const ref_vec part = ref_vshift(ref_times(p->normal, up), 14);
-    take_in(fit, 0, flat, ref_vshift(ref_sub(G, part), 5),
+    take_in(fit, 0, flat, ref_vshift(ref_sub(G, part), 1),
             smaller((1 << 26) / (squared(p, p->along) + ef + 1), 1 << 18),
             1 << 24);
-    take_in(fit, 1, high, (ref_vec){ { ref_shift(up, 5) } },
+    take_in(fit, 1, high, (ref_vec){ { ref_shift(up, 1) } },
             smaller((1 << 26) / (squared(p, p->across) / 2 + eh + 1),
                     1 << 18),
             1 << 27);

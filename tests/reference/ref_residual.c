@@ -158,7 +158,7 @@ static int64_t len(const int64_t *v)
         m = at_least(absolute(v[i]), m);
         sum += absolute(v[i]);
     }
-    return m + (sum - m) * 3 / 8;
+    return m + ref_shift(sum - m, 2) + ref_shift(sum - m, 3);
 }
 
 static void adapt_both(ref_residual_models *m, const ref_prediction *p,

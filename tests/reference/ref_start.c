@@ -82,7 +82,8 @@ void ref_models_start(ref *r)
     start_base(&r->base_models);
     start_wedges(&r->wedge_models);
     load_models(r->flag, ref_FLAG, 1680);
-    load_weights(r->cut.shape[0][0], ref_SHAPE, 30, 4);
+    load_weights(r->cut.shape[0][0], ref_SHAPE, 12, 4);
+    load_weights(r->cut.reach[0], ref_REACH, 4, 4);
     load_weights(r->cut.degree[0], ref_DEGREE, 24, 256);
     load_weights(r->cut.state[0][0][0], ref_STATE, 250, 256);
     load_weights(r->cut.span[0][0], ref_SPAN, 280, 256);

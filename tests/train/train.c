@@ -134,6 +134,8 @@ static void set_tables(pmesh_tables *to, const totals *t)
     const sums *from = t->cut; /* in the order of pmesh_cut_weights */
     set_words(to->shape, from, COUNT(to->shape), 4);
     from += COUNT(to->shape);
+    set_words(to->reach, from, COUNT(to->reach), 4);
+    from += COUNT(to->reach);
     set_words(to->degree, from, COUNT(to->degree), 256);
     from += COUNT(to->degree);
     set_words(to->state, from, COUNT(to->state), 256);
@@ -254,6 +256,7 @@ static void print_tables(const pmesh_tables *t)
            "#include \"format/tables.h\"\n\n"
            "const pmesh_tables pmesh_start = {\n");
     PRINT(shape, 'w');
+    PRINT(reach, 'w');
     PRINT(degree, 'w');
     PRINT(state, 'w');
     PRINT(span, 'w');

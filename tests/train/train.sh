@@ -10,8 +10,8 @@ trap 'rm -f "$new"' EXIT
 "$TRAIN" "$@" >"$new"
 cp "$new" format/tables.c
 
-dimensions='shape [3][2][5] degree [2][12] state [2][5][5][5]
-    span [2][14][10] predict [3][9][3][8][2] along [2][9][3][5]
+dimensions='shape [3][2][2] reach [2][2] degree [2][12] state [2][5][5][5]
+    span [2][14][10] predict [3][9][3][7][2] along [2][9][3][5]
     across [2][14][3] flag [1680] rank [2][4][32] residual [60][20]
     low [60][3]'
 awk '{ print } /^## Appendix C/ { on = 1 } on && /^$/ && ++blank == 2 { exit }' \

@@ -17,34 +17,33 @@ static uint64_t next_random(uint64_t *state)
     return *state;
 }
 
-static void check_root(uint64_t value)
+static void check_root(uint32_t value)
 {
     const uint64_t root = pmesh_isqrt(value);
-    CHECK(root * root <= value);
-    CHECK(root == UINT32_MAX || (root + 1) * (root + 1) > value);
+    CHECK(root * root <= value && (root + 1) * (root + 1) > value);
 }
 
 TEST(square_roots_are_rounded_down)
 {
     uint64_t state = 1;
-    for (uint64_t value = 0; value < 100000; value++)
+    for (uint32_t value = 0; value < 100000; value++)
         check_root(value);
-    for (uint64_t root = UINT32_MAX; root > UINT32_MAX - 1000ull; root--) {
+    for (uint32_t root = UINT16_MAX; root > UINT16_MAX - 1000; root--) {
         check_root(root * root - 1);
         check_root(root * root);
         check_root(root * root + 1);
     }
-    check_root(UINT64_MAX);
+    check_root(UINT32_MAX);
     for (int i = 0; i < 100000; i++)
-        check_root(next_random(&state) >> (i % 64));
+        check_root((uint32_t)next_random(&state) >> (i % 32));
 }
 
 TEST(shares_of_a_ring_are_quotients)
 {
-    for (int64_t value = -(1 << 26); value <= 1 << 26; value += 4099)
+    for (int32_t value = -(1 << 26); value <= 1 << 26; value += 4099)
         for (uint32_t count = 1; count <= PMESH_MAX_RING; count++) {
-            const int64_t share = pmesh_share(value, count);
-            const int64_t exact = value / (int64_t)count;
+            const int32_t share = pmesh_share(value, count);
+            const int32_t exact = value / (int32_t)count;
             CHECK(share <= exact && share >= exact - 1);
         }
 }
@@ -70,7 +69,7 @@ static void make_sample(uint64_t *state, const int32_t weight[PMESH_FIT_TERMS],
 TEST(a_fit_finds_the_weights_of_its_samples)
 {
     static const int32_t wanted[PMESH_FIT_TERMS] = { 30000, -70000, 0,    65536,
-                                                     -1000, 12345,  9999, 5 };
+                                                     -1000, 12345,  9999 };
     static const int16_t start[2 * PMESH_FIT_TERMS] = { 256, 0, -256, 0 };
     uint64_t state = 7;
     pmesh_fit fit;
