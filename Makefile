@@ -186,11 +186,13 @@ bench: bench-all
 ## bench-decode: time to decode, against Draco
 ## bench-lossless: cost of exact positions
 ## bench-refine: time and uploads of moving among decoded splits
+## bench-web: time to decode in a browser, against Draco and native code
 ## bench-time: time and memory of the commands
 bench_programs := $(addprefix $(B)/bench_,decode qem refine simplify)
 bench-%: bench-deps
 	+@$(submake) all $(bench_programs)
 	@PMESH=$(B)/pmesh tests/bench/$*.sh
+bench-web: web-deps
 $(bench_programs): $(B)/bench_%: $(B)/tests/bench/bench_%.o
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bench_libs) -o $@
 $(B)/bench_decode $(B)/bench_refine: $(B)/libpmesh-dec.a

@@ -11,7 +11,7 @@
 import { createServer } from "node:http";
 import { gzipSync } from "node:zlib";
 
-const TYPES = { html: "text/html", js: "text/javascript" };
+const TYPES = { "/": "text/html", html: "text/html", js: "text/javascript" };
 
 export async function serve(body, options = {}) {
     const state = {
