@@ -3,9 +3,9 @@
 # Usage: PMESH=build/release/pmesh tests/web/run.sh
 #
 # The npm package in node, with a server on loopback: the same bits as native
-# code, loading, workers. Then the viewer's page in headless Chromium, if that
-# is there and so is what npm brings (with NPM=1 it is fetched, as `make
-# check-web` does). What is skipped is said.
+# code, loading, workers. With NPM=1, as `make check-web` sets it, also the
+# viewer's page in headless Chromium, for which npm brings playwright-core and
+# three.js. What is skipped is said.
 set -u
 status=0
 passed=0
@@ -16,7 +16,7 @@ dir=$(mktemp -d $web/test-XXXXXX) && dir=$PWD/$dir || exit 1
 trap 'rm -rf "$dir"' EXIT
 
 skip() {
-    echo "web: $1 (make check-web installs what is needed)"
+    echo "web: $1"
 }
 
 finish() {
@@ -43,7 +43,7 @@ run_tests() {
 
 for tool in clang wasm-ld node; do
     command -v $tool >/dev/null || {
-        skip "skipped, there is no $tool"
+        skip "skipped, there is no $tool (make check-web installs it)"
         finish
     }
 done
@@ -61,6 +61,10 @@ ln -sfn ../pmesh $web/node_modules/pmesh
 cp tests/web/*.mjs $web/tests
 run_tests $web/tests/*.test.mjs
 
+[ "${NPM-}" = 1 ] || {
+    skip "the viewer in a browser is left to make check-web"
+    finish
+}
 CHROMIUM=$(command -v chromium || command -v chromium-browser) || {
     skip "browser skipped, there is no chromium"
     finish
@@ -68,19 +72,13 @@ CHROMIUM=$(command -v chromium || command -v chromium-browser) || {
 SHOTS=$PWD/$web/shots
 export CHROMIUM SHOTS
 lock=tests/web/browser/package-lock.json
-if [ "${NPM-}" = 1 ] && ! cmp -s $lock $web/browser/installed; then
+if ! cmp -s $lock $web/browser/installed; then
     mkdir -p $web/browser
     cp tests/web/browser/package.json $lock $web/browser/
     (cd $web/browser && npm ci --ignore-scripts --no-audit --no-fund --silent) &&
-        cp $lock $web/browser/installed
+        cp $lock $web/browser/installed || exit 1
 fi
-if [ "${NPM-}" = 1 ] || [ -e $web/viewer/installed ]; then
-    tools/web/viewer/build.sh $web/pmesh $web/viewer.html || exit 1
-fi
-if [ ! -e $web/browser/installed ] || [ ! -e $web/viewer.html ]; then
-    skip "browser skipped, playwright-core or the viewer is missing"
-    finish
-fi
+tools/web/viewer/build.sh $web/pmesh $web/viewer.html || exit 1
 cp tests/web/browser/*.mjs $web/browser/
 run_tests $web/browser/viewer.check.mjs
 finish
