@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { Decoder, PmeshError } from "pmesh";
+import { Decoder, PmeshError, supported } from "pmesh";
 
 const golden = pathToFileURL(process.env.PMESH_GOLDEN);
 const read = (name) => new Uint8Array(readFileSync(new URL(name, golden)));
@@ -78,6 +78,8 @@ function expected() {
     }
     return files;
 }
+
+test("is supported here", () => assert.equal(supported, true));
 
 test("golden files decode to the same bits", async () => {
     const wanted = expected();

@@ -36,7 +36,7 @@ run_tests() {
         fail) failed=$((failed + ${count:-1})) ;;
         esac
     done
-    grep '^# first picture' "$dir/tap"
+    sed -n 's|.*# first picture|web: first picture|p' "$dir/tap"
     [ $status = 0 ] || sed -n '/^ *not ok/,/^ *\.\.\./p' "$dir/tap" |
         head -n 100
 }
@@ -79,6 +79,8 @@ if ! cmp -s $lock $web/browser/installed; then
         cp $lock $web/browser/installed || exit 1
 fi
 tools/web/viewer/build.sh $web/pmesh $web/viewer.html || exit 1
-cp tests/web/browser/*.mjs $web/browser/
+cp tests/web/server.mjs tests/web/browser/*.mjs $web/browser/
+ln -sfn ../viewer/node_modules/three $web/node_modules/three
+run_tests $web/browser/three.check.mjs
 run_tests $web/browser/viewer.check.mjs
 finish

@@ -7,8 +7,12 @@ const NEED_DATA = 1, MORE = 2, E_MEMORY = -2;
 const INPUT_SIZE = 65536;
 const KINDS = ["normal", "texcoord", "color", "generic"];
 
+// A function that returns a vector, to see whether there are any.
+const VECTOR = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1,
+    123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11);
+
 export const supported = typeof WebAssembly === "object" &&
-    typeof DecompressionStream === "function";
+    typeof DecompressionStream === "function" && WebAssembly.validate(VECTOR);
 
 let module;
 

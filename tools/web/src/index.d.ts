@@ -85,7 +85,7 @@ export class PmeshError extends Error {
     constructor(message: string, code: string, offset?: number);
 }
 
-/** WebAssembly and DecompressionStream are there. */
+/** WebAssembly with vectors and DecompressionStream are there. */
 export const supported: boolean;
 
 /** Compiles the decoder, once. */

@@ -139,9 +139,17 @@ export class ProgressiveMesh extends Mesh {
     }
 }
 
+// three forgets ranges when it has sent them; an object that is not drawn must
+// not collect them without end.
+const MOST_RANGES = 256;
+
 function mark(attribute, ranges, size) {
     if (ranges.length === 0)
         return;
+    if (attribute.updateRanges.length + ranges.length > MOST_RANGES) {
+        attribute.clearUpdateRanges();
+        ranges = [{ first: 0, count: attribute.array.length / size }];
+    }
     for (const { first, count } of ranges)
         attribute.addUpdateRange(size * first, size * count);
     attribute.needsUpdate = true;
