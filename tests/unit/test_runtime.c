@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "decoder/dec_touched.h"
 #include "tests/unit/shapes.h"
 #include "tests/unit/test.h"
 
@@ -169,6 +170,55 @@ TEST(uploading_the_ranges_reproduces_the_mesh)
             walk(&s, 2000);
             scene_free(&s);
         }
+}
+
+static int falling(const void *a, const void *b)
+{
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x < y) - (x > y);
+}
+
+/* What the widest gaps between runs of touched items leave to be listed. */
+static uint64_t least_listed(const dec_touched *t, uint32_t end)
+{
+    uint32_t gaps[4096], count = 0, first = dec_touched_next(t, 0, end);
+    uint32_t last = first;
+    for (uint32_t i = first; i < end; i = dec_touched_next(t, i + 1, end)) {
+        if (i > last + 1)
+            gaps[count++] = i - last - 1;
+        last = i;
+    }
+    uint64_t listed = first < end ? last + 1 - first : 0;
+    qsort(gaps, count, sizeof *gaps, falling);
+    for (uint32_t i = 0; i < count && i + 1 < PMESH_MAX_RANGES; i++)
+        listed -= gaps[i];
+    return listed;
+}
+
+TEST(few_ranges_list_as_little_as_possible)
+{
+    enum { ITEMS = 4001 };
+    static uint32_t words[(ITEMS + 127) / 128 * 4];
+    uint32_t seed = 2;
+    for (int round = 0; round < 500; round++) {
+        dec_touched t;
+        pmesh_range ranges[PMESH_MAX_RANGES];
+        uint64_t listed = 0;
+        dec_touched_bind(&t, ITEMS, words);
+        for (uint32_t i = shape_random(&seed, 1 + (uint32_t)round); i > 0; i--) {
+            const uint32_t at = shape_random(&seed, ITEMS);
+            const uint32_t end = at + shape_random(&seed, 80);
+            dec_touch_range(&t, at, end < ITEMS ? end : ITEMS);
+        }
+        const uint32_t end = 1 + shape_random(&seed, ITEMS);
+        const uint32_t count = dec_touched_ranges(&t, end, ranges);
+        for (uint32_t i = 0; i < count; i++) {
+            CHECK(dec_is_touched(&t, ranges[i].first));
+            CHECK(ranges[i].first + ranges[i].count <= end);
+            listed += ranges[i].count;
+        }
+        CHECK(listed == least_listed(&t, end));
+    }
 }
 
 TEST(max_ops_bounds_the_splits_of_a_call)
