@@ -200,14 +200,14 @@ TEST(few_ranges_list_as_little_as_possible)
     enum { ITEMS = 4001 };
     static uint32_t words[(ITEMS + 127) / 128 * 4];
     uint32_t seed = 2;
-    for (int round = 0; round < 500; round++) {
+    for (uint32_t round = 0; round < 500; round++) {
         dec_touched t;
         pmesh_range ranges[PMESH_MAX_RANGES];
         uint64_t listed = 0;
         dec_touched_bind(&t, ITEMS, words);
-        for (uint32_t i = shape_random(&seed, 1 + (uint32_t)round); i > 0; i--) {
+        for (uint32_t i = shape_random(&seed, 1 + round); i > 0; i--) {
             const uint32_t at = shape_random(&seed, ITEMS);
-            const uint32_t end = at + shape_random(&seed, 80);
+            const uint32_t end = at + shape_random(&seed, 1 + round % 20);
             dec_touch_range(&t, at, end < ITEMS ? end : ITEMS);
         }
         const uint32_t end = 1 + shape_random(&seed, ITEMS);
