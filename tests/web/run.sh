@@ -70,7 +70,8 @@ CHROMIUM=$(command -v chromium || command -v chromium-browser) || {
     finish
 }
 SHOTS=$PWD/$web/shots
-export CHROMIUM SHOTS
+PACKAGE=$PWD/$web/pmesh
+export CHROMIUM SHOTS PACKAGE
 lock=tests/web/browser/package-lock.json
 if ! cmp -s $lock $web/browser/installed; then
     mkdir -p $web/browser
@@ -82,5 +83,6 @@ tools/web/viewer/build.sh $web/pmesh $web/viewer.html || exit 1
 cp tests/web/server.mjs tests/web/browser/*.mjs $web/browser/
 ln -sfn ../viewer/node_modules/three $web/node_modules/three
 run_tests $web/browser/three.check.mjs
+run_tests $web/browser/worker.check.mjs
 run_tests $web/browser/viewer.check.mjs
 finish
