@@ -6,6 +6,7 @@
 
 #include "decoder/dec_internal.h"
 #include "format/alloc.h"
+#include "format/inflate.h"
 
 #define DEFAULT_MEMORY ((uint64_t)4 << 30)
 
@@ -65,7 +66,9 @@ static pmesh_level level_of(const pmesh_decoder *dec, uint32_t i)
                           .faces = e->faces,
                           .mesh_vertices = e->vertices,
                           .vertices = e->wedges,
-                          .error = e->error };
+                          .error = e->error,
+                          .inflation =
+                              (float)e->inflation / PMESH_INFLATE_ONE };
 }
 
 pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)

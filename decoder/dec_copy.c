@@ -28,7 +28,8 @@ void dec_position(const pmesh_decoder *dec, uint32_t v, float xyz[3])
         return;
     }
     for (int k = 0; k < 3; k++)
-        xyz[k] = (float)pmesh_grid_dequantize(&dec->header.grid, k, q[k]);
+        xyz[k] = pmesh_narrow(
+            pmesh_grid_dequantize(&dec->header.grid, k, q[k]));
 }
 
 void dec_value(const pmesh_decoder *dec, uint32_t attribute, uint32_t w,

@@ -41,7 +41,7 @@ _Attribute = _struct("Attribute", ("kind", c.c_int), ("set", c.c_uint8),
                      ("minimum", c.c_float * 4), ("scale", c.c_float * 4))
 _Level = _struct("Level", ("bytes", c.c_uint64), ("faces", c.c_uint32),
                  ("mesh_vertices", c.c_uint32), ("vertices", c.c_uint32),
-                 ("error", c.c_float))
+                 ("error", c.c_float), ("inflation", c.c_float))
 _Error = _struct("Error", ("status", c.c_int), ("offset", c.c_uint64),
                  ("rule", c.c_char_p))
 _Header = _struct(
