@@ -45,7 +45,7 @@ static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
                           void *block)
 {
-    carver k = { block, 0 };
+    carver k = { (uint8_t *)block, 0 };
     carve_mesh(&k, &c->mesh, s);
     c->sizes = *s;
     c->order = carve(&k, s->vertices, sizeof *c->order);

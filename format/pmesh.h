@@ -40,6 +40,7 @@ extern "C" {
 typedef enum pmesh_status {
     PMESH_OK = 0,
     PMESH_NEED_DATA = 1,     /* not an error: feed more bytes */
+    PMESH_MORE = 2,          /* not an error: max_ops were used up, go on */
     PMESH_E_ARGUMENT = -1,   /* the caller broke a documented precondition */
     PMESH_E_MEMORY = -2,     /* the allocator returned NULL */
     PMESH_E_LIMIT = -3,      /* valid, but larger than the config allows */

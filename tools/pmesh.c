@@ -29,6 +29,8 @@ static const subcommand subcommands[] = {
     { "verify", cmd_verify, "decode .pmesh files and check every byte" },
     { "compare", cmd_compare, "measure the distance of two meshes" },
     { "sheet", cmd_sheet, "draw the levels of a .pmesh into a picture" },
+    { "plan", cmd_plan, "say how much of a .pmesh to load" },
+    { "view", cmd_view, "make a page that shows a .pmesh in a browser" },
     { "sample", cmd_sample, "write a mesh to try things with" },
 };
 #define SUBCOMMAND_COUNT (sizeof subcommands / sizeof *subcommands)

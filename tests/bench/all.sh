@@ -17,5 +17,7 @@ echo "== cost of exact positions"
 tests/bench/lossless.sh
 echo "== time to decode"
 tests/bench/decode.sh
+echo "== time of moving between levels"
+tests/bench/refine.sh
 echo "== time and memory"
 tests/bench/time.sh
