@@ -22,7 +22,7 @@ typedef struct options {
     uint32_t faces;
     uint64_t bytes;
     double ratio, error; /* negative: not given */
-    bool strict, salvage, no_attributes, quiet;
+    bool inflate, strict, salvage, no_attributes, quiet;
 } options;
 
 static const args_option option_table[] = {
@@ -43,6 +43,10 @@ static const args_option option_table[] = {
     { .name = "bytes", .kind = ARGS_SIZE, .value = "N", .min = 1,
       .max = FILE_LIMIT, .offset = offsetof(options, bytes),
       .help = "as if only the first N bytes had arrived" },
+    { .name = "inflate", .kind = ARGS_FLAG,
+      .offset = offsetof(options, inflate),
+      .help = "swell coarse levels to the full mesh's volume: closer\n"
+              "to it, but vertices leave their places" },
     { .name = "strict", .kind = ARGS_FLAG, .offset = offsetof(options, strict),
       .help = "refuse a file that is cut off" },
     { .name = "salvage", .kind = ARGS_FLAG,
@@ -172,6 +176,11 @@ static int write_mesh(const extraction *job, const stream *s)
 
     if (!asset_from_decoder(s->decoder, &mesh, &error))
         return input_failed(job, CMD_IO, &error);
+    if (job->options->inflate && !asset_inflate(s->decoder, &mesh)) {
+        asset_free(&mesh);
+        asset_fail(&error, "", "out of memory");
+        return input_failed(job, CMD_IO, &error);
+    }
     asset shown = mesh; /* borrows all of it */
     if (job->options->no_attributes)
         shown.attribute_count = 0;
