@@ -39,7 +39,8 @@ enum { PROGRESS_INTERVAL = 1 << 16 };
 
 bool enc_run_done(const enc_run *run)
 {
-    return run->cancelled || run->surface.face_count <= run->face_target ||
+    return run->cancelled || run->starved ||
+           run->surface.face_count <= run->face_target ||
            run->surface.vertex_count <= run->vertex_target;
 }
 
@@ -184,7 +185,7 @@ static bool are_linked(enc_surface *s, uint32_t v, uint32_t w)
 }
 
 /* Those by distance are followed to where they went; those between sheets are
- * made anew, if it is time for them. Without memory for these there are none. */
+ * made anew, if it is time for them. */
 static void queue_near(enc_run *run)
 {
     enc_surface *s = &run->surface;
@@ -193,7 +194,7 @@ static void queue_near(enc_run *run)
     for (uint32_t i = 0; i < run->within; i++)
         for (int k = 0; k < 2; k++)
             near->pair[i][k] = survivor(run, near->pair[i][k]);
-    enc_near_sheets(s, near);
+    run->starved = enc_near_sheets(s, near) != PMESH_OK;
     if (near->count - run->within > SHEETS_SHARE * s->vertex_count)
         run->joins_sheets = true;
     if (!run->joins_sheets)

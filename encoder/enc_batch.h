@@ -68,9 +68,11 @@ typedef struct enc_run {
     double parallel_limit; /* cost up to which parallel pairs are preferred */
     uint32_t tick;         /* candidates seen, for progress */
     bool cancelled;
+    bool starved; /* out of memory */
 } enc_run;
 
-/* True once the base mesh is reached, or the caller has cancelled. */
+/* True once the base mesh is reached, the caller has cancelled, or there is no
+ * memory left. */
 bool enc_run_done(const enc_run *run);
 
 /* Contracts up to plan->limit pairs; appends them to the schedule's list, but

@@ -300,8 +300,8 @@ pmesh_status enc_schedule_build(const enc_mesh *mesh,
         run_batches(&run, variant);
         out->position = run.surface.position;
         run.surface.position = NULL;
-        if (run.cancelled)
-            status = PMESH_E_CANCELLED;
+        if (run.cancelled || run.starved)
+            status = run.cancelled ? PMESH_E_CANCELLED : PMESH_E_MEMORY;
         else if (mesh->wedge)
             status = finish_wedges(&run);
     }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "tests/unit/faces.h"
+#include "tests/unit/import_trial.h"
 #include "tests/unit/shapes.h"
 #include "tests/unit/test.h"
 
@@ -308,7 +309,31 @@ TEST(plates_within_the_threshold_become_one)
     model_free(&m);
 }
 
-/* ---- all of it ------------------------------------------------------------ */
+/* ---- all of it ----------------------------------------------------------- */
+
+static int swallow(void *user, const void *data, size_t size)
+{
+    (void)user, (void)data, (void)size;
+    return 0;
+}
+
+TEST(joining_survives_every_failing_allocation)
+{
+    shape_mesh *s = shape_make(SHAPE_FACETS, 5, 1);
+    pmesh_encoder_config config = joining(4);
+    pmesh_status status = PMESH_E_MEMORY;
+    size_t allowed = 0;
+    config.threshold = 0.1;
+    for (; status == PMESH_E_MEMORY; allowed++) {
+        account acc = { .allowed = allowed };
+        config.allocator =
+            (pmesh_allocator){ import_alloc, import_release, &acc };
+        status = pmesh_encode(&s->input, &config, swallow, NULL, NULL);
+        CHECK(acc.bytes == 0);
+    }
+    CHECK(status == PMESH_OK && allowed > 40);
+    shape_free(s);
+}
 
 static void any_shape_comes_back(shape_kind kind, uint32_t seed)
 {
