@@ -82,6 +82,7 @@ pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
         .profile = h->profile,
         .placement = h->sizes.moves ? PMESH_OPTIMAL : PMESH_SUBSET,
         .base_coder = h->base_coder,
+        .joined = h->sizes.joined,
         .grid = h->grid,
         .faces = h->sizes.faces,
         .mesh_vertices = h->sizes.vertices,

@@ -63,19 +63,18 @@ bool dec_view_append(pmesh_decoder *dec)
         const uint32_t new_edge = 3 * c->child_face[u - b->vertex];
         for (uint32_t h = new_edge; h < 3 * c->face_end[u]; h++)
             view->index[h] = pmesh_birth_wedge(m, h, u);
-        const uint32_t start = m->first[u];
-        uint32_t h = start;
-        do {
-            if (h < new_edge) {
-                if (count == dec->header.moved_corners)
-                    return false;
-                view->moved[count] = h;
-                if (m->wedge)
-                    view->moved_wedge[count] = m->wedge[h];
-                count++;
-            }
-            h = pmesh_turn_left(m, h);
-        } while (h != PMESH_NONE && h != start);
+        uint32_t start = m->first[u];
+        for (uint32_t h = start; h != PMESH_NONE;
+             h = pmesh_corner_next(m, &start, h)) {
+            if (h >= new_edge)
+                continue;
+            if (count == dec->header.moved_corners)
+                return false;
+            view->moved[count] = h;
+            if (m->wedge)
+                view->moved_wedge[count] = m->wedge[h];
+            count++;
+        }
         view->moved_first[u + 1] = count;
         if (view->position) {
             memcpy(view->position[u], m->position[u], sizeof *view->position);

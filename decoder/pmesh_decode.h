@@ -93,6 +93,8 @@ typedef struct pmesh_header {
     pmesh_profile profile;
     pmesh_placement placement;
     pmesh_base_coder base_coder;
+    int joined;             /* non-zero: sheets and pieces may meet in a mesh
+                               vertex, and part at finer levels */
     pmesh_grid grid;
     int32_t bounds[3];      /* largest grid coordinate of each axis */
     uint32_t faces;
