@@ -242,7 +242,7 @@ install: all
 	for h in $(headers); do sed 's|#include "format/|#include "|' $$h \
 	  >$(include)/$${h##*/}; done
 	sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|' \
-	  -e 's|@VERSION@|$(version)|' pmesh.pc.in >$(lib)/pkgconfig/pmesh.pc
+	  -e 's|@VERSION@|$(version)|' tools/pmesh.pc.in >$(lib)/pkgconfig/pmesh.pc
 
 ## uninstall: remove what install put there
 uninstall:

@@ -15,7 +15,7 @@ build() {
     program=$1
     shift
     "$@" -Wall -Wextra -Wpedantic -Werror -O1 -ffp-contract=off -I"$single" \
-        examples/upload.c "$single/pmesh_decode.c" -o "$dir/$program"
+        tools/example/upload.c "$single/pmesh_decode.c" -o "$dir/$program"
 }
 
 # Each golden file, whole and up to 60 faces, as `program` shows it.
