@@ -189,7 +189,8 @@ bench-deps:
 cross-deps:
 	@tests/install-deps.sh cross
 
-headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h
+headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h \
+  encoder/pmesh_scene_encode.h decoder/pmesh_scene.h
 lib := $(DESTDIR)$(LIBDIR)
 include := $(DESTDIR)$(PREFIX)/include
 bin := $(DESTDIR)$(PREFIX)/bin
@@ -204,7 +205,7 @@ install: all
 	install -m 755 $(B)/libpmesh.so $(lib)/libpmesh.so.$(version)
 	ln -sf libpmesh.so.$(version) $(lib)/$(soname)
 	ln -sf $(soname) $(lib)/libpmesh.so
-	for h in $(headers); do sed 's|#include "format/|#include "|' $$h \
+	for h in $(headers); do sed 's|#include "[a-z]*/|#include "|' $$h \
 	  >$(include)/$${h##*/}; done
 	sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|' \
 	  -e 's|@VERSION@|$(version)|' pmesh.pc.in >$(lib)/pkgconfig/pmesh.pc
