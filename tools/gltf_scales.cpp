@@ -156,7 +156,8 @@ matrix measure::bind(const gltf_json &skin, size_t joint)
         return out;
     const gltf_item view{ list("bufferViews")[number], "bufferViews", number };
     const uint32_t buffer = view.id("buffer", list("buffers").size());
-    if (buffer != 0 || !source.bin)
+    if (buffer != 0 || !source.bin ||
+        view.extension("EXT_meshopt_compression"))
         return out;
     const uint64_t stride = view.whole("byteStride", 64);
     const uint64_t start = view.whole("byteOffset", 0) +

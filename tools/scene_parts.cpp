@@ -137,6 +137,17 @@ bool is_list(const gltf_json &in, const char *name, size_t least)
     return found != in.end() && found->is_array() && found->size() >= least;
 }
 
+/* Whether a material is more than a name. */
+bool has_looks(const gltf_json &in)
+{
+    if (!is_list(in, "materials", 1))
+        return false;
+    for (const gltf_json &material : in["materials"])
+        if (material.size() > material.count("name"))
+            return true;
+    return false;
+}
+
 } // namespace
 
 bool scene_is_worth_it(const uint8_t *data, size_t size)
@@ -156,7 +167,8 @@ bool scene_is_worth_it(const uint8_t *data, size_t size)
             if (is_list(in, list, 1))
                 return true;
         return is_list(in, "meshes", 2) || is_list(in, "scenes", 2) ||
-               in.contains("extensions");
+               is_list(in, "nodes", 2) || in.contains("extensions") ||
+               has_looks(in);
     } catch (...) {
         return false;
     }
