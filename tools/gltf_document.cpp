@@ -311,6 +311,8 @@ const char *mime_of(const gltf_bytes &b)
 /* Each image is a resource; those beside the file move in. */
 void taker::images()
 {
+    if (!doc.contains("bufferViews")) /* before references into doc are held */
+        doc["bufferViews"] = gltf_document::array();
     for (size_t i = 0; i < count("images"); i++) {
         const gltf_item image = item("images", i);
         gltf_document &to = doc["images"][i];
@@ -384,13 +386,12 @@ void taker::views()
 
 void taker::free_places()
 {
-    gltf_document &root = doc["extensions"][GLTF_PROGRESSIVE];
+    gltf_document root = gltf_document::object();
     const struct {
         const char *name;
         const std::vector<use> &uses;
     } lists[] = { { "accessors", accessor_use }, { "bufferViews", view_use } };
 
-    root = gltf_document::object();
     for (const auto &list : lists) {
         gltf_document numbers = gltf_document::array();
         size_t size = list.uses.size();
@@ -406,6 +407,7 @@ void taker::free_places()
             doc.erase(list.name);
         root[list.name] = std::move(numbers);
     }
+    doc["extensions"][GLTF_PROGRESSIVE] = std::move(root);
 }
 
 /* Names in extensionsUsed and extensionsRequired that are true no more. */

@@ -91,6 +91,11 @@ void writer::open()
         throw std::runtime_error(std::string("the document is no glTF: ") +
                                  error.what);
     doc = gltf_document::parse(source.json, source.json + source.json_size);
+    /* Members of the root must not come or go from now on: references into an
+     * ordered document would not survive it. */
+    for (const char *list : { "accessors", "bufferViews", "buffers" })
+        if (!doc.contains(list))
+            doc[list] = gltf_document::array();
     free_accessors = free_list("accessors");
     free_views = free_list("bufferViews");
 }
@@ -299,16 +304,11 @@ void writer::resources()
 /* Before the geometry's views are added: all that there are name resources. */
 void writer::move_views()
 {
-    for (gltf_document &view : doc.value("bufferViews", gltf_document::array()))
-        if (view.contains("buffer") &&
-            view["buffer"].get<size_t>() >= resource_start.size())
-            throw std::runtime_error("a view's buffer is not there");
-    if (!doc.contains("bufferViews"))
-        return;
     for (gltf_document &view : doc["bufferViews"]) {
         if (!view.contains("buffer"))
             continue;
-        const size_t start = resource_start[view["buffer"].get<size_t>()];
+        const size_t start =
+            resource_start.at(view["buffer"].get<size_t>());
         view["buffer"] = 0;
         view["byteOffset"] = start + view.value("byteOffset", size_t{ 0 });
     }
