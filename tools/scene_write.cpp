@@ -405,7 +405,7 @@ bool scene_write(pmesh_scene *scene, bool glb, asset_bytes *out, asset *notes,
         return asset_fail(error, "", "out of memory");
     } catch (const gltf_document::exception &) {
         return asset_fail(error, "", "the document is no glTF of a scene");
-    } catch (const std::exception &e) {
+    } catch (const std::runtime_error &e) {
         return asset_fail(error, "", "%s", e.what());
     } catch (...) {
         return asset_fail(error, "", "the document is unreadable");
