@@ -155,6 +155,14 @@ check-reference:
 	@PMESH=$(B)/pmesh FILES=10000 MENDED=2000 DAMAGED=500 \
 	  tests/reference/run.sh
 
+## check-gltf: scenes of tests/scene by Khronos' glTF validator (npm)
+check-gltf:
+	+@$(submake) $(B)/pmesh
+	@cd tests/scene && npm install --silent --no-save --prefix \
+	  $(CURDIR)/build/gltf gltf-validator@2.0.0-dev.3.10 >/dev/null
+	@PMESH=$(CURDIR)/$(B)/pmesh NODE_PATH=$(CURDIR)/build/gltf/node_modules \
+	  VALIDATE="node tests/scene/validate.js" tests/scene/run.sh
+
 ## golden: write tests/golden anew; only for another version of the format
 golden: $(golden)
 	$(B)/golden_bake tests/golden
@@ -226,6 +234,6 @@ help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: all demo test check unit check-deps check-headers check-symbols bench
-.PHONY: check-cross check-reference golden deps bench-deps cross-deps install
+.PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps install
 .PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
