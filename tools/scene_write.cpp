@@ -305,6 +305,8 @@ void writer::resources()
 void writer::move_views()
 {
     for (gltf_document &view : doc["bufferViews"]) {
+        if (!view.is_object())
+            throw std::runtime_error("a view is no object");
         if (!view.contains("buffer"))
             continue;
         const size_t start =
