@@ -6,6 +6,7 @@
 
 #include "decoder/dec_internal.h"
 #include "format/alloc.h"
+#include "format/inflate.h"
 #include "format/quantize.h"
 
 #define DEFAULT_MEMORY ((uint64_t)4 << 30)
@@ -66,7 +67,9 @@ static pmesh_level level_of(const pmesh_decoder *dec, uint32_t i)
                           .faces = e->faces,
                           .mesh_vertices = e->vertices,
                           .vertices = e->wedges,
-                          .error = e->error };
+                          .error = e->error,
+                          .inflation =
+                              (float)e->inflation / PMESH_INFLATE_ONE };
 }
 
 pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
@@ -212,7 +215,8 @@ static void position_of(const pmesh_decoder *dec, uint32_t v, const int32_t *q,
         return;
     }
     for (int k = 0; k < 3; k++)
-        xyz[k] = (float)pmesh_grid_dequantize(&dec->header.grid, k, q[k]);
+        xyz[k] = pmesh_narrow(
+            pmesh_grid_dequantize(&dec->header.grid, k, q[k]));
 }
 
 pmesh_status pmesh_decoder_copy_positions(const pmesh_decoder *dec, float *dst,

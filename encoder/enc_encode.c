@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "encoder/enc_exact.h"
+#include "encoder/enc_inflate.h"
 #include "encoder/enc_mesh.h"
 #include "encoder/enc_replay.h"
 #include "encoder/enc_schedule.h"
@@ -70,6 +71,7 @@ typedef struct job {
     enc_schedule schedule;
     enc_replay replay;
     enc_stream stream;
+    enc_inflate inflate;
     pmesh_header_chunk header;
     uint8_t *room;
     size_t room_size;
@@ -114,6 +116,8 @@ static void finish_level(job *j, uint32_t level)
     e->faces = m->face_count;
     e->vertices = m->vertex_count;
     e->wedges = m->wedge_count;
+    if (level < j->schedule.batch_count)
+        e->inflation = enc_inflate_level(&j->inflate, m);
 }
 
 /* ---- chunks ------------------------------------------------------------ */
@@ -290,7 +294,10 @@ static void fill_report(job *j, uint64_t header_size, uint64_t file_size)
                                       .faces = h->levels[i].faces,
                                       .mesh_vertices = h->levels[i].vertices,
                                       .vertices = h->levels[i].wedges,
-                                      .error = h->levels[i].error };
+                                      .error = h->levels[i].error,
+                                      .inflation =
+                                          (float)h->levels[i].inflation /
+                                          PMESH_INFLATE_ONE };
     r->bytes = file_size;
     r->bytes_base = j->bytes_base;
     r->bytes_connectivity = c->part_size[0];
@@ -307,6 +314,9 @@ static pmesh_status code(job *j, const pmesh_mesh_input *in)
     pmesh_status status =
         enc_replay_create(&j->replay, j->mesh, &j->schedule,
                           j->config.placement == PMESH_OPTIMAL);
+    if (status != PMESH_OK)
+        return status;
+    status = enc_inflate_create(j->mesh, &j->inflate);
     if (status != PMESH_OK)
         return status;
     if (!make_room(j))
@@ -328,6 +338,7 @@ static void job_destroy(job *j)
         return;
     const pmesh_allocator a = j->config.allocator;
     pmesh_release(&a, j->room, j->room_size, 1);
+    enc_inflate_destroy(&j->inflate);
     enc_stream_destroy(&j->stream);
     enc_replay_destroy(&j->replay);
     enc_schedule_destroy(&j->schedule);

@@ -75,6 +75,7 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h)
         if (h->attribute_count)
             pmesh_put_varint(out, e->wedges - last.wedges);
         pmesh_put_f32(out, e->error);
+        pmesh_put(out, e->inflation, 1);
         last = *e;
     }
 }
@@ -137,6 +138,7 @@ static const char *read_level(pmesh_cursor *in, pmesh_header_chunk *h,
     const uint32_t wedges =
         h->attribute_count ? pmesh_get_count(in, PMESH_MAX_WEDGES) : vertices;
     e->error = pmesh_get_f32(in);
+    e->inflation = pmesh_get_u8(in);
     if (in->overrun || bytes > PMESH_MAX_FILE - last->bytes ||
         faces > PMESH_MAX_FACES - last->faces ||
         vertices > PMESH_MAX_FACES - last->vertices ||
@@ -171,6 +173,8 @@ static const char *read_levels(pmesh_cursor *in, pmesh_header_chunk *h)
             return rule;
         last = h->levels[i];
     }
+    if (last.inflation != 0)
+        return "SPEC 5.3: the full mesh is inflated";
     h->sizes.base_faces = h->levels[0].faces;
     h->base_vertices = h->levels[0].vertices;
     h->base_wedges = h->levels[0].wedges;

@@ -14,6 +14,7 @@ typedef struct pmesh_level_entry {
     uint64_t bytes;
     uint32_t faces, vertices, wedges;
     float error;
+    uint8_t inflation; /* see inflate.h; 0 at the last */
 } pmesh_level_entry;
 
 typedef struct pmesh_header_chunk {

@@ -116,6 +116,9 @@ typedef struct pmesh_level {
     uint32_t vertices;      /* output vertices: position and attributes */
     float error;            /* distance to the full mesh, model units, estimate;
                                falls from level to level, 0 at the last */
+    float inflation;        /* share of its height over its neighbours by which
+                               a vertex may be moved out for display; 0 at the
+                               last (SPEC 7.1) */
 } pmesh_level;
 
 /* The same of a scene (pmesh_scene.h): what is there once `bytes` have come. */

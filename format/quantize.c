@@ -35,6 +35,13 @@ double pmesh_grid_dequantize(const pmesh_grid *grid, int axis, int32_t q)
     return grid->origin[axis] + grid->step * (double)q;
 }
 
+float pmesh_narrow(double value)
+{
+    if (!(value >= -(double)FLT_MAX))
+        return -FLT_MAX;
+    return value <= (double)FLT_MAX ? (float)value : FLT_MAX;
+}
+
 /*
  * Normals: the octahedron |x| + |y| + |z| = c, unfolded to the square of
  * 2c + 1 by 2c + 1 codes, c = 2^(bits - 1) - 1. The odd side puts all six axes
@@ -190,12 +197,7 @@ void pmesh_attribute_dequantize(const pmesh_attribute *attribute,
         return;
     }
     for (uint32_t k = 0; k < attribute->components; k++) {
-        double value = (double)attribute->minimum[k] +
-                       (double)in[k] * (double)attribute->scale[k];
-        if (value > (double)FLT_MAX)
-            value = (double)FLT_MAX;
-        if (value < -(double)FLT_MAX)
-            value = -(double)FLT_MAX;
-        out[k] = (float)value;
+        out[k] = pmesh_narrow((double)attribute->minimum[k] +
+                              (double)in[k] * (double)attribute->scale[k]);
     }
 }

@@ -20,6 +20,9 @@ uint32_t pmesh_coded_components(const pmesh_attribute *attribute);
 int32_t pmesh_grid_quantize(const pmesh_grid *grid, int axis, double value);
 double pmesh_grid_dequantize(const pmesh_grid *grid, int axis, int32_t q);
 
+/* The nearest finite float; a hostile grid leaves them (-FLT_MAX for NaN). */
+float pmesh_narrow(double value);
+
 /*
  * One value: `in` holds `components` floats, `out` gets the coded integers.
  *

@@ -23,7 +23,7 @@ typedef struct options {
     uint32_t faces, mesh;
     uint64_t bytes;
     double ratio, error; /* negative: not given */
-    bool strict, salvage, no_attributes, quiet;
+    bool inflate, strict, salvage, no_attributes, quiet;
 } options;
 
 static const args_option option_table[] = {
@@ -47,6 +47,10 @@ static const args_option option_table[] = {
     { .name = "mesh", .kind = ARGS_COUNT, .value = "N", .min = 0,
       .max = UINT32_MAX - 1, .offset = offsetof(options, mesh),
       .help = "of a scene, mesh N only, from 0, in its own space" },
+    { .name = "inflate", .kind = ARGS_FLAG,
+      .offset = offsetof(options, inflate),
+      .help = "swell coarse levels to the full mesh's volume: closer\n"
+              "to it, but vertices leave their places" },
     { .name = "strict", .kind = ARGS_FLAG, .offset = offsetof(options, strict),
       .help = "refuse a file that is cut off" },
     { .name = "salvage", .kind = ARGS_FLAG,
@@ -166,6 +170,11 @@ static int write_mesh(const extraction *job, const stream *s)
 
     if (!asset_from_decoder(s->decoder, &mesh, &error))
         return input_failed(job, CMD_IO, &error);
+    if (job->options->inflate && !asset_inflate(s->decoder, &mesh)) {
+        asset_free(&mesh);
+        asset_fail(&error, "", "out of memory");
+        return input_failed(job, CMD_IO, &error);
+    }
     asset shown = mesh; /* borrows all of it */
     if (job->options->no_attributes)
         shown.attribute_count = 0;
@@ -217,7 +226,8 @@ static int extract_from(const extraction *job, const file_data *data)
                                  .input = job->input, .output = job->output,
                                  .format = job->format, .faces = o->faces,
                                  .ratio = o->ratio, .error = o->error,
-                                 .mesh = o->mesh, .strict = o->strict,
+                                 .mesh = o->mesh, .inflate = o->inflate,
+                                 .strict = o->strict,
                                  .salvage = o->salvage,
                                  .no_attributes = o->no_attributes,
                                  .quiet = o->quiet },

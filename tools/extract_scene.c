@@ -124,12 +124,17 @@ static bool encode(job *j, const pmesh_decoder *one, asset_bytes *out,
     asset mesh;
 
     if (!one && gltf && !r->no_attributes)
-        return scene_write(j->file.scene, r->format == ASSET_GLB, out,
-                           &j->notes, error);
+        return scene_write(j->file.scene,
+                           (scene_style){ r->format == ASSET_GLB, r->inflate },
+                           out, &j->notes, error);
     if (!(one ? asset_from_decoder(one, &mesh, error)
-              : scene_file_merge(&j->file, &mesh, error)))
+              : scene_file_merge(&j->file, r->inflate, &mesh, error)))
         return false;
-    const bool good = encode_asset(j, &mesh, out, error);
+    bool good = !one || !r->inflate || asset_inflate(one, &mesh);
+    if (good)
+        good = encode_asset(j, &mesh, out, error);
+    else
+        asset_fail(error, "", "out of memory");
     asset_free(&mesh);
     return good;
 }

@@ -12,13 +12,14 @@ uint32_t levels_within(const pmesh_level *levels, uint32_t count,
 
 void levels_print(FILE *out, const pmesh_level *levels, uint32_t count)
 {
-    fprintf(out, "level       bytes       faces    vertices       error\n");
+    fprintf(out,
+            "level       bytes       faces    vertices       error  inflate\n");
     for (uint32_t i = 0; i < count; i++)
-        fprintf(out, "%5lu %11llu %11lu %11lu %11.4g\n", (unsigned long)i,
+        fprintf(out, "%5lu %11llu %11lu %11lu %11.4g %8.3f\n", (unsigned long)i,
                 (unsigned long long)levels[i].bytes,
                 (unsigned long)levels[i].faces,
                 (unsigned long)levels[i].mesh_vertices,
-                (double)levels[i].error);
+                (double)levels[i].error, (double)levels[i].inflation);
 }
 
 void levels_json(json *j, const pmesh_level *levels, uint32_t count)
@@ -31,6 +32,7 @@ void levels_json(json *j, const pmesh_level *levels, uint32_t count)
         json_count(j, "vertices", levels[i].mesh_vertices);
         json_count(j, "output_vertices", levels[i].vertices);
         json_float(j, "error", levels[i].error);
+        json_float(j, "inflation", levels[i].inflation);
         json_close(j);
     }
     json_close(j);

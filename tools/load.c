@@ -67,6 +67,17 @@ static bool copy_faces(const pmesh_view *view, const pmesh_grid *grid,
     return true;
 }
 
+/* From output vertices to mesh vertices. */
+static void set_positions(const pmesh_view *view, const float *xyz, asset *out)
+{
+    for (uint32_t i = 0; i < view->vertex_count; i++) {
+        const size_t v = view->positions_of ? view->positions_of[i] : i;
+        for (size_t k = 0; k < 3; k++)
+            out->positions[3 * v + k] = (double)xyz[3 * (size_t)i + k];
+    }
+    out->floats = true;
+}
+
 /* As copy_faces() left them, on the grid, unless there are exact ones. */
 static bool copy_exact(const pmesh_decoder *dec, const pmesh_view *view,
                        asset *out)
@@ -74,18 +85,29 @@ static bool copy_exact(const pmesh_decoder *dec, const pmesh_view *view,
     if (pmesh_decoder_progress(dec).exact_vertices == 0)
         return true;
     float *xyz = malloc((3 * (size_t)view->vertex_count + 1) * sizeof *xyz);
-    if (!xyz || pmesh_decoder_copy_positions(dec, xyz, 0) != PMESH_OK) {
-        free(xyz);
-        return false;
-    }
-    for (uint32_t i = 0; i < view->vertex_count; i++) {
-        const size_t v = view->positions_of ? view->positions_of[i] : i;
-        for (size_t k = 0; k < 3; k++)
-            out->positions[3 * v + k] = (double)xyz[3 * (size_t)i + k];
-    }
+    const bool good =
+        xyz && pmesh_decoder_copy_positions(dec, xyz, 0) == PMESH_OK;
+    if (good)
+        set_positions(view, xyz, out);
     free(xyz);
-    out->floats = true;
-    return true;
+    return good;
+}
+
+bool asset_inflate(const pmesh_decoder *dec, asset *mesh)
+{
+    pmesh_view view;
+    if (pmesh_decoder_mesh(dec, &view) != PMESH_OK)
+        return false;
+    float *xyz = malloc((3 * (size_t)view.vertex_count + 1) * sizeof *xyz);
+    void *room = malloc(pmesh_decoder_inflate_room(dec));
+    const bool good =
+        xyz && room &&
+        pmesh_decoder_copy_inflated(dec, xyz, 0, room) == PMESH_OK;
+    if (good)
+        set_positions(&view, xyz, mesh);
+    free(room);
+    free(xyz);
+    return good;
 }
 
 static bool copy_attribute(const pmesh_decoder *dec, const pmesh_view *view,

@@ -32,6 +32,10 @@ bool load_is_stream(const file_data *data, const char *path);
 bool asset_from_decoder(const pmesh_decoder *dec, asset *out,
                         asset_error *error);
 
+/* Swells its positions, for display (pmesh_decoder_copy_inflated). False if
+ * memory is out. */
+bool asset_inflate(const pmesh_decoder *dec, asset *mesh);
+
 /* A mesh file, or a .pmesh at full detail. Of a .pmesh that is cut off, what
  * is there, with a line in out->warnings; a damaged one fails. */
 int load_mesh_data(const file_data *data, const char *path, asset *out,

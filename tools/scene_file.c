@@ -47,14 +47,16 @@ void scene_file_close(scene_file *file)
     *file = (scene_file){ 0 };
 }
 
-bool scene_file_merge(const scene_file *file, asset *out, asset_error *error)
+bool scene_file_merge(const scene_file *file, bool inflate, asset *out,
+                      asset_error *error)
 {
     asset_bytes glb = { 0 };
     asset notes = { 0 };
 
     *out = (asset){ 0 };
     const bool ok =
-        scene_write(file->scene, true, &glb, &notes, error) &&
+        scene_write(file->scene, (scene_style){ true, inflate }, &glb, &notes,
+                    error) &&
         asset_read(glb.data, glb.size, ASSET_GLB, NULL, out, error);
     asset_bytes_free(&glb);
     return ok;
@@ -72,7 +74,7 @@ int scene_file_load(const file_data *data, asset *out, asset_error *error)
     }
     if (code == CMD_DONE) {
         pmesh_scene_refine(file.scene, NULL, NULL);
-        if (!scene_file_merge(&file, out, error))
+        if (!scene_file_merge(&file, false, out, error))
             code = file.progress.complete ? CMD_ASSET : CMD_STREAM;
     }
     if (code == CMD_DONE && !file.progress.complete)

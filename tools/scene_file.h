@@ -33,7 +33,8 @@ void scene_file_close(scene_file *file);
  * What is shown, as one mesh in the world: every instance with its materials,
  * without nodes, skins, animations. On failure *out is empty.
  */
-bool scene_file_merge(const scene_file *file, asset *out, asset_error *error);
+bool scene_file_merge(const scene_file *file, bool inflate, asset *out,
+                      asset_error *error);
 
 /* A whole scene, or what is there of it, merged at full detail; the rules of
  * load_mesh_data(). */

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <stdexcept>
 
@@ -148,13 +149,21 @@ int stored_type(const std::string &semantic, const scene_form &form)
 
 } // namespace
 
-scene_geometry::scene_geometry(const pmesh_decoder *from) : decoder(from)
+scene_geometry::scene_geometry(const pmesh_decoder *from, bool inflate)
+    : decoder(from)
 {
     if (!decoder || pmesh_decoder_header(decoder, &header) != PMESH_OK ||
         pmesh_decoder_mesh(decoder, &view) != PMESH_OK)
         throw std::runtime_error("cut off before the base mesh of every mesh");
     xyz.resize(3 * static_cast<size_t>(view.vertex_count));
-    pmesh_decoder_copy_positions(decoder, xyz.data(), 0);
+    if (inflate) {
+        std::vector<std::max_align_t> room(
+            pmesh_decoder_inflate_room(decoder) / sizeof(std::max_align_t) +
+            1);
+        pmesh_decoder_copy_inflated(decoder, xyz.data(), 0, room.data());
+    } else {
+        pmesh_decoder_copy_positions(decoder, xyz.data(), 0);
+    }
     channels.resize(header.attribute_count);
     number.assign(view.vertex_count, none);
 

@@ -34,7 +34,7 @@ struct scene_array {
 /* A mesh at the level it shows now. */
 class scene_geometry {
 public:
-    explicit scene_geometry(const pmesh_decoder *decoder);
+    scene_geometry(const pmesh_decoder *decoder, bool inflate);
 
     /* Chooses the faces of one material; their vertices are numbered in order
      * of appearance. A material without faces at this level gets one of no

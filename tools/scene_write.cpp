@@ -28,11 +28,15 @@ const uint8_t pixel[] = {
 
 class writer {
 public:
-    writer(pmesh_scene *from, asset *warn) : scene(from), notes(warn) {}
-    void write(bool glb, asset_bytes *out);
+    writer(pmesh_scene *from, scene_style how, asset *warn)
+        : scene(from), style(how), notes(warn)
+    {
+    }
+    void write(asset_bytes *out);
 
 private:
     pmesh_scene *scene;
+    scene_style style;
     asset *notes;
     gltf_document doc;
     gltf_bytes bin;
@@ -174,7 +178,7 @@ scene_geometry &writer::geometry(const gltf_document &record)
     auto &mesh = meshes[number];
     if (!mesh)
         mesh = std::make_unique<scene_geometry>(
-            pmesh_scene_mesh(scene, number));
+            pmesh_scene_mesh(scene, number), style.inflate);
     return *mesh;
 }
 
@@ -373,7 +377,7 @@ std::string base64(const gltf_bytes &in)
     return out;
 }
 
-void writer::write(bool glb, asset_bytes *out)
+void writer::write(asset_bytes *out)
 {
     open();
     resources();
@@ -382,10 +386,10 @@ void writer::write(bool glb, asset_bytes *out)
     drop_marks();
     align(4);
     doc["buffers"] = { { { "byteLength", bin.size() } } };
-    if (!glb)
+    if (!style.glb)
         doc["buffers"][0]["uri"] =
             "data:application/octet-stream;base64," + base64(bin);
-    if (glb) {
+    if (style.glb) {
         put_glb(doc.dump(), out);
     } else {
         const std::string json = doc.dump(2) + "\n";
@@ -397,11 +401,11 @@ void writer::write(bool glb, asset_bytes *out)
 
 } // namespace
 
-bool scene_write(pmesh_scene *scene, bool glb, asset_bytes *out, asset *notes,
-                 asset_error *error)
+bool scene_write(pmesh_scene *scene, scene_style style, asset_bytes *out,
+                 asset *notes, asset_error *error)
 {
     try {
-        writer(scene, notes).write(glb, out);
+        writer(scene, style, notes).write(out);
         return true;
     } catch (const std::bad_alloc &) {
         return asset_fail(error, "", "out of memory");

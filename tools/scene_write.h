@@ -6,6 +6,8 @@
 #ifndef SCENE_WRITE_H
 #define SCENE_WRITE_H
 
+#include <stdbool.h>
+
 #include "decoder/pmesh_scene.h"
 #include "tools/asset.h"
 
@@ -13,15 +15,20 @@
 extern "C" {
 #endif
 
+typedef struct scene_style {
+    bool glb;     /* else .gltf, with a data URI */
+    bool inflate; /* coarse levels, see pmesh_decoder_copy_inflated() */
+} scene_style;
+
 /*
- * Appends a .glb, or a .gltf with a data URI, to `out`. Of a scene that has not
+ * Appends a glTF file to `out`. Of a scene that has not
  * arrived whole, images that are missing become one grey pixel and missing
  * animations are left out: lines in notes->warnings say so. Fails while the
  * document, a base mesh or what nothing can be shown without is missing, and
  * for documents that are no glTF.
  */
-bool scene_write(pmesh_scene *scene, bool glb, asset_bytes *out, asset *notes,
-                 asset_error *error);
+bool scene_write(pmesh_scene *scene, scene_style style, asset_bytes *out,
+                 asset *notes, asset_error *error);
 
 #ifdef __cplusplus
 }

@@ -29,6 +29,16 @@ for n in "$base" 300 1000 1001 4607 4608 4000000000; do
 done
 check '--ratio 25%' 0 extract t.pmesh -q -o n.obj --ratio 25%
 ok '--ratio 25% is of the full mesh' between "$(faces n.obj)" 1150 1152
+check '--inflate' 0 extract t.pmesh -q -o fat.obj --ratio 25% --inflate
+differ() { ! cmp -s "$1" "$2"; }
+faces_of() { grep '^f' "$1" >"$1.faces"; }
+faces_of n.obj
+faces_of fat.obj
+ok '--inflate keeps the faces' cmp -s n.obj.faces fat.obj.faces
+ok '--inflate moves vertices' differ n.obj fat.obj
+check '--inflate of all' 0 extract t.pmesh -q -o fat.ply --inflate
+check '... and without' 0 extract t.pmesh -q -o full.ply
+check 'full detail is not inflated' 0 compare full.ply fat.ply --fail-above 1e-6
 check '--faces below the base mesh' 0 extract t.pmesh -o n.obj --faces 1
 ok '--faces below the base mesh: a warning' err "warning: 1 faces .*$base"
 ok '--faces below the base mesh: it is written' test "$(faces n.obj)" = "$base"

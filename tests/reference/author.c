@@ -92,6 +92,7 @@ static shape_bytes write_header(const ref_header *h)
         if (h->attribute_count > 0)
             put_varint(&out, l->wedges - was->wedges);
         put_f32(&out, 0);
+        put(&out, 0, 1);
     }
     return out;
 }

@@ -38,7 +38,8 @@ static bool same_level(const ref_level *a, const pmesh_level *b)
 {
     return a->faces == b->faces && a->vertices == b->mesh_vertices &&
            a->wedges == b->vertices &&
-           !memcmp(&a->error, &b->error, sizeof(float));
+           !memcmp(&a->error, &b->error, sizeof(float)) &&
+           a->inflation == 256 * b->inflation;
 }
 
 static const char *compare_header(const ref_header *a, const pmesh_header *b)

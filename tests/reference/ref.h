@@ -98,6 +98,7 @@ typedef struct ref_attribute {
 typedef struct ref_level {
     uint64_t bytes, faces, vertices, wedges;
     float error;
+    int inflation; /* in 1/256 */
 } ref_level;
 
 typedef struct ref_form {

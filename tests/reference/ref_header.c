@@ -123,6 +123,9 @@ static void read_level(ref_bytes *in, ref_header *h, int i)
     l->error = get_f32(in, "5.3: error");
     ref_check(in->r, l->error >= 0 && (i == 0 || l->error <= was->error),
               "5.3: error");
+    l->inflation = (int)ref_get(in, 1);
+    ref_check(in->r, l->inflation == 0 || i + 1 < h->level_count,
+              "5.3: inflation");
     const uint64_t faces = l->faces - was->faces;
     const uint64_t vertices = l->vertices - was->vertices;
     const uint64_t wedges = l->wedges - was->wedges;

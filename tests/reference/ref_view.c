@@ -65,8 +65,8 @@ static void put_position(const ref *r, const ref_vec *at, uint32_t v,
         exact = exact && at[v].c[i] == r->vertex[v].at.c[i];
     for (int i = 0; i < 3; i++)
         out[i] = exact ? r->vertex[v].exact[i]
-                       : (float)(r->header.origin[i] +
-                                 r->header.step * (double)at[v].c[i]);
+                       : narrow(r->header.origin[i] +
+                                r->header.step * (double)at[v].c[i]);
 }
 
 static void put_normal(const ref_attribute *a, const uint16_t *q, float *out)

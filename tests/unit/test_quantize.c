@@ -248,6 +248,14 @@ TEST(grid_points_come_back)
     }
 }
 
+TEST(narrowing_stays_finite)
+{
+    CHECK(pmesh_narrow(0.1) == 0.1f && pmesh_narrow(-0.1) == -0.1f);
+    CHECK(pmesh_narrow(1e300) == FLT_MAX && pmesh_narrow(-1e39) == -FLT_MAX);
+    CHECK(pmesh_narrow(HUGE_VAL) == FLT_MAX);
+    CHECK(pmesh_narrow(HUGE_VAL - HUGE_VAL) == -FLT_MAX);
+}
+
 TEST(dequantising_hostile_codes_stays_finite)
 {
     pmesh_attribute a = attribute_of(PMESH_GENERIC, 1, 4);

@@ -41,7 +41,8 @@ static bool writes(const char *document)
     CHECK(pmesh_scene_encode(&input, NULL, collect, &file, NULL) == PMESH_OK);
     CHECK(pmesh_scene_create(&scene, NULL) == PMESH_OK);
     CHECK(pmesh_scene_feed(scene, file.data, file.size) == PMESH_OK);
-    const bool ok = scene_write(scene, true, &out, &notes, &error);
+    const bool ok = scene_write(scene, (scene_style){ .glb = true }, &out,
+                                &notes, &error);
     CHECK(ok || error.what[0] != '\0');
     pmesh_scene_destroy(scene);
     asset_bytes_free(&file);
