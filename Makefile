@@ -176,6 +176,7 @@ bench: bench-all
 ## bench-quality: distance at equal faces, against CGAL and meshoptimizer
 ## bench-decode: time to decode, against Draco
 ## bench-lossless: cost of exact positions
+## bench-skin: distance of skinned levels in five poses of an animation
 ## bench-time: time and memory of the commands
 bench_programs := $(addprefix $(B)/bench_,decode qem simplify)
 bench-%: bench-deps

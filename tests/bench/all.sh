@@ -13,6 +13,8 @@ echo "== distance at equal face counts: other programs"
 tests/bench/quality.sh
 echo "== cost of exact positions"
 tests/bench/lossless.sh
+echo "== skinned levels in motion"
+tests/bench/skin.sh
 echo "== time to decode"
 tests/bench/decode.sh
 echo "== time and memory"

@@ -73,6 +73,17 @@ def compare_others(a, b):
                     compare_accessor(a, b, number, 'kept')
 
 
+def check_weights(g):
+    """Every vertex of a skin has weights, and their sum is 1."""
+    for i, mesh in enumerate(g.json['meshes']):
+        for p in mesh['primitives']:
+            sets = [g.accessor(a) for n, a in p['attributes'].items()
+                    if n.startswith('WEIGHTS_')]
+            for rows in zip(*sets):
+                total = sum(sum(row) for row in rows)
+                check(abs(total - 1) < 1e-6, 'weights of mesh', i, total)
+
+
 class Nearest:
     """The output's positions, found by the input's."""
 
@@ -209,6 +220,7 @@ def compare_geometry(a, b):
 
 before, after = Gltf(sys.argv[1]), Gltf(sys.argv[2])
 compare_json(before, after)
+check_weights(after)
 if 'EXT_meshopt_compression' not in before.json.get('extensionsUsed', []):
     compare_images(before, after)
     compare_others(before, after)
