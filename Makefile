@@ -159,9 +159,12 @@ check-reference:
 check-gltf:
 	+@$(submake) $(B)/pmesh
 	@cd tests/scene && npm install --silent --no-save --prefix \
-	  $(CURDIR)/build/gltf gltf-validator@2.0.0-dev.3.10 >/dev/null
+	  $(CURDIR)/build/gltf gltf-validator@2.0.0-dev.3.10 \
+	  @gltf-transform/cli@4 >/dev/null
 	@PMESH=$(CURDIR)/$(B)/pmesh NODE_PATH=$(CURDIR)/build/gltf/node_modules \
-	  VALIDATE="node tests/scene/validate.js" tests/scene/run.sh
+	  VALIDATE="node tests/scene/validate.js" \
+	  TRANSFORM=$(CURDIR)/build/gltf/node_modules/.bin/gltf-transform \
+	  tests/scene/run.sh
 
 ## golden: write tests/golden anew; only for another version of the format
 golden: $(golden)

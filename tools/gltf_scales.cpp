@@ -8,6 +8,7 @@
  */
 #include <cmath>
 #include <cstring>
+#include <map>
 
 #include "tools/gltf_document.h"
 
@@ -95,6 +96,7 @@ private:
     const gltf_source &source;
     gltf_json in;
     std::vector<matrix> world;
+    std::map<uint32_t, gltf_bytes> buffers; /* loaded when needed */
 
     const gltf_json &list(const char *name) const
     {
@@ -156,17 +158,20 @@ matrix measure::bind(const gltf_json &skin, size_t joint)
         return out;
     const gltf_item view{ list("bufferViews")[number], "bufferViews", number };
     const uint32_t buffer = view.id("buffer", list("buffers").size());
-    if (buffer != 0 || !source.bin ||
-        view.extension("EXT_meshopt_compression"))
+    if (buffer == GLTF_NONE || view.extension("EXT_meshopt_compression"))
         return out;
+    gltf_bytes &bytes = buffers[buffer];
+    if (bytes.empty())
+        bytes = gltf_load_buffer(
+            source, { list("buffers")[buffer], "buffers", buffer });
     const uint64_t stride = view.whole("byteStride", 64);
     const uint64_t start = view.whole("byteOffset", 0) +
                            accessor.whole("byteOffset", 0) + joint * stride;
-    if (start > source.bin_size || source.bin_size - start < 64)
+    if (start > bytes.size() || bytes.size() - start < 64)
         return out;
     for (int i = 0; i < 16; i++) {
         float value;
-        memcpy(&value, source.bin + start + 4 * i, sizeof value);
+        memcpy(&value, bytes.data() + start + 4 * i, sizeof value);
         out.m[i] = std::isfinite(value) ? static_cast<double>(value) : 0;
     }
     return out;

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Usage: PMESH=build/release/pmesh tests/scene/run.sh
-#        VALIDATE="node tests/scene/validate.js": each output, too (make
-#        check-gltf)
+#        VALIDATE="node tests/scene/validate.js": each output, too
+#        TRANSFORM=gltf-transform: also of files by Draco and meshoptimizer
+#        (make check-gltf sets both)
 #
 # glTF scenes in and out: everything but geometry is as it was, all of the
 # geometry comes back, any prefix and budget is a scene. Takes a generated zoo
@@ -105,6 +106,14 @@ if ! command -v python3 >/dev/null; then
     exit 0
 fi
 mkdir "$dir/zoo" && python3 $here/zoo.py "$dir/zoo" || exit 1
+if [ -n "${TRANSFORM-}" ]; then
+    for coder in draco meshopt; do
+        for name in skinned textures scenes; do
+            $TRANSFORM $coder "$dir/zoo/$name.glb" \
+                "$dir/zoo/$name-$coder.glb" >/dev/null || exit 1
+        done
+    done
+fi
 for model in "$dir"/zoo/*.glb "$PMESH_MODELS"/*.glb \
     "$PMESH_MODELS"/*/*.gltf; do
     [ ! -e "$model" ] || scene "$model"
