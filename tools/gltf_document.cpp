@@ -66,7 +66,7 @@ private:
     gltf_document set(const gltf_primitive &p, const gltf_channels &channels,
                       uint32_t number);
     void code_primitive(gltf_document &to, const gltf_primitive &p,
-                        const gltf_stream &stream, uint32_t material);
+                        const gltf_stream &stream);
     void meshes();
     size_t add_view(size_t resource, size_t size);
     void images();
@@ -243,10 +243,10 @@ gltf_document taker::set(const gltf_primitive &p,
 }
 
 void taker::code_primitive(gltf_document &to, const gltf_primitive &p,
-                           const gltf_stream &stream, uint32_t material)
+                           const gltf_stream &stream)
 {
     gltf_document record = { { "mesh", stream.number },
-                             { "material", material } };
+                             { "material", stream.material } };
     record["attributes"] = set(p, stream.channels, 0);
     record["attributes"]["POSITION"] = gltf_document::object();
     for (uint32_t i = 1; i < p.set_count; i++)
@@ -263,19 +263,19 @@ void taker::meshes()
     for (size_t i = 0; i < count("meshes"); i++) {
         const gltf_json &primitives = in["meshes"][i]["primitives"];
         size_t next = model.meshes[i].first; /* points and lines are not there */
-        uint32_t material = 0;
         for (size_t k = 0; k < primitives.size(); k++) {
             const gltf_item from{ primitives[k], "meshes", i };
             if (from.whole("mode", 4) < 4) {
                 mark_kept(from);
                 continue;
             }
-            const gltf_primitive &p = model.primitives[next++];
-            if (streams[i].number == GLTF_NONE || !gltf_is_coded(&p))
+            const gltf_stream &stream = streams[next];
+            if (stream.number == GLTF_NONE)
                 mark_kept(from);
             else
-                code_primitive(doc["meshes"][i]["primitives"][k], p,
-                               streams[i], material++);
+                code_primitive(doc["meshes"][i]["primitives"][k],
+                               model.primitives[next], stream);
+            next++;
         }
     }
 }

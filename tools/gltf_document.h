@@ -13,9 +13,10 @@ using gltf_document = nlohmann::ordered_json;
 
 #define GLTF_PROGRESSIVE "PMESH_progressive"
 
-/* Which stream a glTF mesh became, and how. */
+/* Which stream, and which material of it, a primitive became, and how. */
 struct gltf_stream {
     uint32_t number = GLTF_NONE; /* GLTF_NONE: it is kept as it is */
+    uint32_t material = 0;
     gltf_channels channels = {};
 };
 
@@ -26,8 +27,8 @@ struct gltf_parts {
 };
 
 /*
- * Writes the document. `streams` has an element for each mesh of the model,
- * which was loaded from `source` with everything.
+ * Writes the document. `streams` has an element for each primitive of the
+ * model, which was loaded from `source` with everything.
  */
 gltf_parts gltf_take_apart(const gltf_source &source, const gltf_model &model,
                            const std::vector<gltf_stream> &streams,

@@ -121,6 +121,18 @@ static bool take_faces(maker *m, const part *p)
     return true;
 }
 
+/* Names a primitive by its mesh, of which `mesh` may be a part. */
+static void place_of(const gltf_model *model, size_t primitive, char *where,
+                     size_t size)
+{
+    size_t i = 0;
+    while (i + 1 < model->mesh_count &&
+           primitive >= model->meshes[i].first + model->meshes[i].count)
+        i++;
+    snprintf(where, size, "mesh %zu, primitive %zu", i,
+             primitive - model->meshes[i].first);
+}
+
 /* The coded primitives of a mesh, counted; at most mesh->count. */
 static bool find_parts(const maker *m, const gltf_mesh *mesh, part *parts,
                        size_t *count)
@@ -135,8 +147,7 @@ static bool find_parts(const maker *m, const gltf_mesh *mesh, part *parts,
         *p = (part){ .primitive = primitive,
                      .position = &m->model->accessors[primitive->position],
                      .material = (uint32_t)(*count)++ };
-        snprintf(p->where, sizeof p->where, "mesh %zu, primitive %zu",
-                 (size_t)(mesh - m->model->meshes), k);
+        place_of(m->model, mesh->first + k, p->where, sizeof p->where);
         if (!gltf_face_count(m->model, primitive, p->where, &p->faces,
                              m->error))
             return false;

@@ -2,9 +2,12 @@
 /* scene_parts.cpp - a glTF file in: its meshes, its document, its resources. */
 #include "tools/scene_parts.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <new>
+#include <utility>
 
 #include "tools/gltf_document.h"
 
@@ -39,33 +42,105 @@ std::string name_of(const gltf_json &in, size_t mesh)
     return text;
 }
 
-/* The mesh as an asset at the end of the list, unless it has to stay as it is;
- * its stream's number then. */
-gltf_stream take_mesh(const gltf_model &model, size_t number,
-                      const std::string &name, scene_parts *out)
+/* Whether two primitives have a face in common: a decal upon another material,
+ * of which one stream would keep one. Faces are told by a hash. */
+bool share_faces(const asset &mesh)
 {
-    gltf_stream stream;
-    const gltf_mesh *mesh = &model.meshes[number];
+    std::vector<std::pair<uint64_t, uint32_t>> faces(mesh.face_count);
+
+    for (size_t f = 0; f < mesh.face_count; f++) {
+        uint64_t corner[3];
+        for (size_t k = 0; k < 3; k++) {
+            const double *p =
+                mesh.positions + 3 * size_t{ mesh.indices[3 * f + k] };
+            corner[k] = 14695981039346656037u;
+            for (size_t i = 0; i < 3; i++) {
+                uint64_t bits;
+                const double value = p[i] + 0.0; /* -0 is 0 */
+                memcpy(&bits, &value, sizeof bits);
+                corner[k] = (corner[k] ^ bits) * 0x9E3779B97F4A7C15u;
+                corner[k] ^= corner[k] >> 29;
+            }
+        }
+        std::rotate(corner, std::min_element(corner, corner + 3), corner + 3);
+        faces[f] = { (corner[0] * 3 + corner[1]) * 0xD6E8FEB86659FD93u +
+                         corner[2],
+                     mesh.materials[f] };
+    }
+    std::sort(faces.begin(), faces.end());
+    for (size_t f = 1; f < faces.size(); f++)
+        if (faces[f].first == faces[f - 1].first &&
+            faces[f].second != faces[f - 1].second)
+            return true;
+    return false;
+}
+
+/* One stream in the making, for some primitives of a mesh. */
+class streamer {
+public:
+    streamer(const gltf_model &from, scene_parts *to,
+             std::vector<gltf_stream> *of)
+        : model(from), out(to), streams(of)
+    {
+    }
+    void take(size_t number, const std::string &name);
+
+private:
+    const gltf_model &model;
+    scene_parts *out;
+    std::vector<gltf_stream> *streams; /* by primitive */
+
+    bool add(const gltf_mesh &mesh, const std::string &name, bool whole);
+};
+
+/* Adds the primitives of `mesh` as one stream, unless they have to stay as they
+ * are. False if they are not to be one stream, but `whole` asks for that. */
+bool streamer::add(const gltf_mesh &mesh, const std::string &name, bool whole)
+{
     scene_mesh *to = &out->meshes[out->mesh_count];
+    gltf_stream stream;
     asset_error error;
     bool empty;
 
-    gltf_channels_of(&model, mesh, name.c_str(), &stream.channels, &out->notes);
+    gltf_channels_of(&model, &mesh, name.c_str(), &stream.channels,
+                     &out->notes);
     if (!stream.channels.fits) {
         asset_warn(&out->notes, "%s: its morph targets need more than %d "
                    "attributes; it is kept as it is", name.c_str(),
                    PMESH_MAX_ATTRIBUTES);
-        return stream;
+        return true;
     }
-    if (!gltf_mesh_asset(&model, mesh, &stream.channels, &to->mesh, &empty,
+    if (!gltf_mesh_asset(&model, &mesh, &stream.channels, &to->mesh, &empty,
                          &error)) {
         if (!empty)
             fail(error);
-        return stream;
+        return true;
+    }
+    if (whole && share_faces(to->mesh)) {
+        asset_free(&to->mesh);
+        to->mesh = {};
+        return false;
     }
     snprintf(to->name, sizeof to->name, "%s", name.c_str());
     stream.number = static_cast<uint32_t>(out->mesh_count++);
-    return stream;
+    for (size_t k = mesh.first; k < mesh.first + mesh.count; k++)
+        if (gltf_is_coded(&model.primitives[k])) {
+            (*streams)[k] = stream;
+            stream.material++;
+        }
+    return true;
+}
+
+void streamer::take(size_t number, const std::string &name)
+{
+    const gltf_mesh &mesh = model.meshes[number];
+
+    if (add(mesh, name, true))
+        return;
+    asset_warn(&out->notes, "%s: primitives share faces, and are refined each "
+               "for itself", name.c_str());
+    for (size_t k = 0; k < mesh.count; k++)
+        add({ mesh.first + k, 1 }, name, false);
 }
 
 void put(asset_bytes *to, const void *data, size_t size)
@@ -103,16 +178,17 @@ void read(const gltf_source &source, holder *held, scene_parts *out)
     const gltf_json in =
         gltf_json::parse(source.json, source.json + source.json_size);
     const std::vector<double> scales = gltf_scales(source);
-    std::vector<gltf_stream> streams;
+    std::vector<gltf_stream> streams(model.primitive_count);
+    streamer taker(model, out, &streams);
     out->meshes = static_cast<scene_mesh *>(
-        calloc(model.mesh_count + 1, sizeof *out->meshes));
+        calloc(model.primitive_count + 1, sizeof *out->meshes));
     if (!out->meshes)
         throw std::bad_alloc();
     for (size_t i = 0; i < model.mesh_count; i++) {
-        streams.push_back(take_mesh(model, i, name_of(in, i), out));
-        if (streams[i].number != GLTF_NONE)
-            out->meshes[streams[i].number].scale =
-                static_cast<float>(scales[i]);
+        const size_t first = out->mesh_count;
+        taker.take(i, name_of(in, i));
+        for (size_t k = first; k < out->mesh_count; k++)
+            out->meshes[k].scale = static_cast<float>(scales[i]);
     }
     if (out->mesh_count == 0)
         throw std::runtime_error("the scene has no triangles to refine");

@@ -348,12 +348,21 @@ def shared(f):
     f.node(mesh=f.mesh(primitives))
 
 
+def decals(f):
+    """Two materials on the same faces."""
+    s = Sheet(10)
+    f.json['materials'] = [{'name': 'wall'}, {'alphaMode': 'BLEND'}]
+    under, over = plain(f, s, material=0), plain(f, s, material=1)
+    over['attributes']['TEXCOORD_0'] = f.accessor(s.uv)
+    f.node(mesh=f.mesh([under, over]))
+
+
 def main(folder):
     with open(os.path.join(folder, 'zoo image.png'), 'wb') as out:
         out.write(png(30))
     for make in (modes, sparse, interleaved, quantised, skinned,
                  eight_weights, scenes, morphs, kept, attributes, textures,
-                 shared):
+                 shared, decals):
         f = File()
         make(f)
         f.save(os.path.join(folder, make.__name__ + '.glb'))
