@@ -129,6 +129,18 @@ check:
 unit: $(B)/unit
 	$< $(T)
 
+## single: the decoder as two files, build/single/pmesh_decode.[ch]
+single:
+	@tools/amalgamate.sh build/single $(version)
+
+## web: the npm package with the decoder as WebAssembly, build/web/pmesh
+web:
+	@tools/web/build.sh build/web/pmesh $(version)
+
+## viewer: the page of `pmesh view`, build/web/viewer.html (Node and npm)
+viewer: web
+	@tools/web/viewer/build.sh build/web/pmesh build/web/viewer.html
+
 ## train: make the codec's starting tables anew from TRAIN_ON="a.obj b.obj"
 train: $(B)/train
 	TRAIN=$< tests/train/train.sh $(TRAIN_ON)
@@ -148,6 +160,11 @@ check-symbols: $(libs)
 ## check-cross: the same results on other compilers and machines (tests/cross)
 check-cross: cross-deps
 	@tests/cross/all.sh build/cross
+
+## check-web: the npm package in node, the viewer in a browser (tests/web)
+check-web: web-deps
+	+@$(submake) $(B)/pmesh
+	@NPM=1 PMESH=$(B)/pmesh tests/web/run.sh
 
 ## check-reference: 10,000 files against a decoder made from SPEC.md alone
 check-reference:
@@ -180,14 +197,20 @@ bench: bench-all
 ## bench-decode: time to decode, against Draco
 ## bench-lossless: cost of exact positions
 ## bench-skin: distance of skinned levels in five poses of an animation
+## bench-attributes: attributes of simplified meshes, against meshoptimizer
+## bench-refine: time and uploads of moving among decoded splits
+## bench-web: time to decode in a browser, against Draco and native code
 ## bench-time: time and memory of the commands
-bench_programs := $(addprefix $(B)/bench_,decode qem simplify)
+bench_programs := $(addprefix $(B)/bench_,attributes decode qem refine simplify)
 bench-%: bench-deps
 	+@$(submake) all $(bench_programs)
 	@PMESH=$(B)/pmesh tests/bench/$*.sh
+bench-web: web-deps
 $(bench_programs): $(B)/bench_%: $(B)/tests/bench/bench_%.o
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bench_libs) -o $@
-$(B)/bench_decode: $(B)/libpmesh-dec.a
+$(B)/bench_attributes: $(shared_obj) $(B)/libpmesh.a
+$(B)/bench_attributes: bench_libs := $(bridge_libs)
+$(B)/bench_decode $(B)/bench_refine: $(B)/libpmesh-dec.a
 $(B)/bench_decode: bench_libs := -ldraco
 $(B)/bench_simplify: bench_libs := -lmeshoptimizer -lgmp -lmpfr
 
@@ -197,15 +220,21 @@ deps:
 ## bench-deps: those that `make bench` needs
 bench-deps:
 	@tests/install-deps.sh build bench
+## web-deps: those that `make web` and `make check-web` need
+web-deps:
+	@tests/install-deps.sh build web
 ## cross-deps: those that `make check-cross` needs
 cross-deps:
 	@tests/install-deps.sh cross
 
-headers := format/pmesh.h encoder/pmesh_encode.h decoder/pmesh_decode.h \
-  encoder/pmesh_scene_encode.h decoder/pmesh_scene.h
+headers := format/pmesh.h encoder/pmesh_encode.h encoder/pmesh_simplify.h \
+  encoder/pmesh_scene_encode.h decoder/pmesh_decode.h decoder/pmesh_plan.h \
+  decoder/pmesh_scene.h
 lib := $(DESTDIR)$(LIBDIR)
 include := $(DESTDIR)$(PREFIX)/include
 bin := $(DESTDIR)$(PREFIX)/bin
+share := $(DESTDIR)$(PREFIX)/share/pmesh
+completions := $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 man := $(DESTDIR)$(PREFIX)/share/man/man1
 
 ## install: into PREFIX (/usr/local) below DESTDIR
@@ -213,18 +242,25 @@ install: all
 	install -d $(bin) $(man) $(include) $(lib)/pkgconfig
 	install -m 755 $(B)/pmesh $(bin)
 	install -m 644 tools/pmesh.1 $(man)
+	install -d $(share) $(completions)
+	install -m 644 tools/pmesh.bash $(completions)/pmesh
+	install -m 644 tools/python/pmesh.py $(share)
 	install -m 644 $(B)/libpmesh.a $(B)/libpmesh-dec.a $(lib)
 	install -m 755 $(B)/libpmesh.so $(lib)/libpmesh.so.$(version)
 	ln -sf libpmesh.so.$(version) $(lib)/$(soname)
 	ln -sf $(soname) $(lib)/libpmesh.so
+	if [ -e build/web/viewer.html ]; then \
+	  install -m 644 build/web/viewer.html $(share); \
+	else echo "no page for pmesh view: 'make viewer' makes it"; fi
 	for h in $(headers); do sed 's|#include "[a-z]*/|#include "|' $$h \
 	  >$(include)/$${h##*/}; done
 	sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|' \
-	  -e 's|@VERSION@|$(version)|' pmesh.pc.in >$(lib)/pkgconfig/pmesh.pc
+	  -e 's|@VERSION@|$(version)|' tools/pmesh.pc.in >$(lib)/pkgconfig/pmesh.pc
 
 ## uninstall: remove what install put there
 uninstall:
-	rm -f $(bin)/pmesh $(man)/pmesh.1
+	rm -f $(bin)/pmesh $(man)/pmesh.1 $(share)/viewer.html
+	rm -f $(completions)/pmesh $(share)/pmesh.py
 	rm -f $(addprefix $(include)/,$(notdir $(headers)))
 	rm -f $(lib)/libpmesh.a $(lib)/libpmesh-dec.a $(lib)/libpmesh.so*
 	rm -f $(lib)/pkgconfig/pmesh.pc
@@ -237,7 +273,8 @@ clean:
 help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
-.PHONY: all demo test check unit check-deps check-headers check-symbols bench
-.PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps install
+.PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
+.PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps web-deps
+.PHONY: check-web install
 .PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * dec_api.c - creation, queries and copying out.
+ * dec_api.c - creation and queries.
  */
 #include <string.h>
 
 #include "decoder/dec_internal.h"
 #include "format/alloc.h"
 #include "format/inflate.h"
-#include "format/quantize.h"
 
 #define DEFAULT_MEMORY ((uint64_t)4 << 30)
 
@@ -83,6 +82,7 @@ pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
         .profile = h->profile,
         .placement = h->sizes.moves ? PMESH_OPTIMAL : PMESH_SUBSET,
         .base_coder = h->base_coder,
+        .joined = h->sizes.joined,
         .grid = h->grid,
         .faces = h->sizes.faces,
         .mesh_vertices = h->sizes.vertices,
@@ -116,57 +116,6 @@ pmesh_progress_state pmesh_decoder_progress(const pmesh_decoder *dec)
     };
 }
 
-/* The most vertices with at most `faces` faces; at least the base. */
-static uint32_t vertices_for_faces(const pmesh_decoder *dec, uint32_t faces)
-{
-    uint32_t low = dec->header.base_vertices, high = dec->view.decoded;
-    while (low < high) {
-        const uint32_t middle = low + (high - low + 1) / 2;
-        if (dec_faces_at(dec, middle) <= faces)
-            low = middle;
-        else
-            high = middle - 1;
-    }
-    return low;
-}
-
-static uint32_t vertices_for_target(const pmesh_decoder *dec,
-                                    const pmesh_target *target)
-{
-    uint32_t n = dec->view.decoded;
-    if (target->faces > 0) {
-        const uint32_t k = vertices_for_faces(dec, target->faces);
-        n = k < n ? k : n;
-    }
-    for (uint32_t i = 0; target->error > 0 && i < dec->levels; i++)
-        if ((double)dec->header.levels[i].error <= target->error) {
-            const uint32_t k = dec->header.levels[i].vertices;
-            n = k < n ? k : n;
-            break;
-        }
-    if (target->bytes > 0) {
-        uint32_t k = dec->header.base_vertices;
-        for (uint32_t i = 0; i < dec->levels; i++)
-            if (level_of(dec, i).bytes <= target->bytes)
-                k = dec->header.levels[i].vertices;
-        n = k < n ? k : n;
-    }
-    return n;
-}
-
-pmesh_status pmesh_decoder_refine(pmesh_decoder *dec,
-                                  const pmesh_target *target,
-                                  pmesh_changes *changes)
-{
-    static const pmesh_target everything = { 0 };
-    if (!dec->has_base)
-        return PMESH_NEED_DATA;
-    dec_view_move(dec,
-                  vertices_for_target(dec, target ? target : &everything),
-                  changes);
-    return PMESH_OK;
-}
-
 /* The error of the finest complete level at or below the visible mesh. */
 static float visible_error(const pmesh_decoder *dec)
 {
@@ -196,70 +145,6 @@ pmesh_status pmesh_decoder_mesh(const pmesh_decoder *dec, pmesh_view *out)
         .materials = m->material,
         .error = visible_error(dec)
     };
-    return PMESH_OK;
-}
-
-static uint8_t *tuple(void *dst, size_t stride, size_t packed, uint32_t i)
-{
-    return (uint8_t *)dst + (size_t)i * (stride ? stride : packed);
-}
-
-/* Mesh vertex v, shown at grid point q. Where parents move, only those that
- * have come to rest are exact. */
-static void position_of(const pmesh_decoder *dec, uint32_t v, const int32_t *q,
-                        float xyz[3])
-{
-    if (v < dec->exact.count &&
-        memcmp(q, dec->codec.mesh.position[v], 3 * sizeof *q) == 0) {
-        memcpy(xyz, dec->exact.position[v], 3 * sizeof *xyz);
-        return;
-    }
-    for (int k = 0; k < 3; k++)
-        xyz[k] = pmesh_narrow(
-            pmesh_grid_dequantize(&dec->header.grid, k, q[k]));
-}
-
-pmesh_status pmesh_decoder_copy_positions(const pmesh_decoder *dec, float *dst,
-                                          size_t stride)
-{
-    pmesh_view view;
-    const pmesh_status status = pmesh_decoder_mesh(dec, &view);
-    if (status != PMESH_OK)
-        return status;
-    if (!dst || (stride && stride < 3 * sizeof *dst))
-        return PMESH_E_ARGUMENT;
-    for (uint32_t i = 0; i < view.vertex_count; i++) {
-        const uint32_t v = view.positions_of ? view.positions_of[i] : i;
-        float xyz[3];
-        position_of(dec, v, view.positions + 3 * (size_t)v, xyz);
-        memcpy(tuple(dst, stride, sizeof xyz, i), xyz, sizeof xyz);
-    }
-    return PMESH_OK;
-}
-
-pmesh_status pmesh_decoder_copy_attribute(const pmesh_decoder *dec,
-                                          uint32_t attribute, float *dst,
-                                          size_t stride)
-{
-    pmesh_view view;
-    const pmesh_status status = pmesh_decoder_mesh(dec, &view);
-    if (status != PMESH_OK)
-        return status;
-    if (!dst || attribute >= dec->header.attribute_count)
-        return PMESH_E_ARGUMENT;
-    const pmesh_attribute *a = &dec->header.attributes[attribute];
-    const size_t size = a->components * sizeof *dst;
-    if (stride && stride < size)
-        return PMESH_E_ARGUMENT;
-    uint32_t offset = 0;
-    for (uint32_t i = 0; i < attribute; i++)
-        offset += pmesh_coded_components(&dec->header.attributes[i]);
-    for (uint32_t i = 0; i < view.vertex_count; i++) {
-        float value[PMESH_MAX_COMPONENTS];
-        pmesh_attribute_dequantize(
-            a, view.values + (size_t)i * view.value_stride + offset, value);
-        memcpy(tuple(dst, stride, size, i), value, size);
-    }
     return PMESH_OK;
 }
 

@@ -38,7 +38,7 @@ pmesh_status dec_chunk_begin(pmesh_decoder *dec)
     }
     if (!dec->has_header && type == PMESH_CHUNK_SCENE)
         return dec_fail(dec, PMESH_E_UNSUPPORTED,
-                        "SPEC 8.1: a scene of meshes: see pmesh_scene.h");
+                        "SPEC 11.1: a scene of meshes: see pmesh_scene.h");
     if (!dec->has_header)
         return corrupt(dec, "SPEC 5.2: the first chunk is not the header");
     if (dec->skipping)
@@ -80,9 +80,10 @@ static uint64_t aligned(uint64_t size)
     return (size + 15) / 16 * 16;
 }
 
-/* Codec, view, payload buffer, names and exact positions, in this order. */
+/* Codec, view, payload buffer, names, exact positions and marks of what changed,
+ * in this order. */
 static uint64_t measure(pmesh_codec *codec, const pmesh_header_chunk *h,
-                        uint64_t part[5])
+                        uint64_t part[6])
 {
     const uint32_t payload =
         h->chunk_size > h->names_size ? h->chunk_size : h->names_size;
@@ -92,15 +93,16 @@ static uint64_t measure(pmesh_codec *codec, const pmesh_header_chunk *h,
     part[3] = aligned((uint64_t)h->names_size + 1);
     part[4] = h->exact_size == 0
                   ? 0
-                  : pmesh_exact_bind(NULL, &h->grid, h->exact_form,
-                                     h->sizes.vertices, NULL);
-    return part[0] + part[1] + part[2] + part[3] + part[4];
+                  : aligned(pmesh_exact_bind(NULL, &h->grid, h->exact_form,
+                                             h->sizes.vertices, NULL));
+    part[5] = dec_changed_bind(NULL, h, NULL);
+    return part[0] + part[1] + part[2] + part[3] + part[4] + part[5];
 }
 
 static pmesh_status allocate(pmesh_decoder *dec)
 {
     const pmesh_header_chunk *h = &dec->header;
-    uint64_t part[5];
+    uint64_t part[6];
     dec->block_size = measure(&dec->codec, h, part);
     if (h->sizes.faces > dec->config.max_faces ||
         dec->block_size > dec->config.max_memory ||
@@ -116,10 +118,11 @@ static pmesh_status allocate(pmesh_decoder *dec)
     dec->payload = at + part[0] + part[1];
     dec->names = (char *)at + part[0] + part[1] + part[2];
     memset(dec->names, 0, h->names_size + 1);
+    at += part[0] + part[1] + part[2] + part[3];
     if (h->exact_size > 0)
         pmesh_exact_bind(&dec->exact, &h->grid, h->exact_form,
-                         h->sizes.vertices,
-                         at + part[0] + part[1] + part[2] + part[3]);
+                         h->sizes.vertices, at);
+    dec_changed_bind(&dec->changed, h, at + part[4]);
 
     memcpy(dec->codec.bounds, h->bounds, sizeof dec->codec.bounds);
     pmesh_codec_limit_values(&dec->codec, h->attributes, h->attribute_count);
@@ -196,6 +199,7 @@ static pmesh_status take_base(pmesh_decoder *dec)
     if (status != PMESH_OK)
         return status;
     dec->has_base = true;
+    dec->changed.base = true;
     dec_view_start(dec);
     return PMESH_OK;
 }

@@ -55,7 +55,7 @@ pmesh_status pmesh_decoder_copy_inflated(const pmesh_decoder *dec, float *dst,
     const double share = share_of(dec);
     if (share == 0)
         return PMESH_OK;
-    pmesh_bulge *bulge = room;
+    pmesh_bulge *bulge = (pmesh_bulge *)room;
     const double to_model = share * dec->header.grid.step;
     gather(&view, bulge);
     for (uint32_t i = 0; i < view.vertex_count; i++) {

@@ -10,6 +10,7 @@
 #ifndef DEC_INTERNAL_H
 #define DEC_INTERNAL_H
 
+#include "decoder/dec_touched.h"
 #include "decoder/pmesh_decode.h"
 #include "format/codec.h"
 #include "format/exact.h"
@@ -31,6 +32,15 @@ typedef struct dec_view {
     int32_t (*position)[3];
     int32_t (*other)[3];
 } dec_view;
+
+/* What the caller has not been told of yet. */
+typedef struct dec_changed {
+    dec_touched faces, vertices; /* output vertices */
+    dec_touched moved;    /* mesh vertices whose position changed; has no memory
+                             if none can: no parent moves, nothing is exact */
+    bool base;            /* the base mesh has come */
+    uint32_t exact;       /* vertices known to be exact */
+} dec_changed;
 
 typedef enum dec_stage {
     DEC_SIGNATURE,
@@ -66,6 +76,9 @@ struct pmesh_decoder {
     bool in_level;
     pmesh_codec codec;
     dec_view view;
+    dec_changed changed;
+    pmesh_buffers buffers; /* the caller's; all NULL: none */
+    bool bound;
     pmesh_exact exact; /* positions; unused unless header.exact_size > 0 */
     uint8_t *payload; /* buffer of header.chunk_size bytes */
     char *names;      /* the names chunk and a final 0 */
@@ -95,9 +108,30 @@ void dec_view_start(pmesh_decoder *dec);
  * the header declares. */
 bool dec_view_append(pmesh_decoder *dec);
 
-/* Moves the visible mesh to `vertices` mesh vertices. */
-void dec_view_move(pmesh_decoder *dec, uint32_t vertices,
-                   pmesh_changes *changes);
+/* Moves the visible mesh to `vertices` mesh vertices; noting: marks what
+ * changes below the shorter end of each buffer. */
+void dec_view_move(pmesh_decoder *dec, uint32_t vertices, bool noting);
+
+/* How many mesh vertices meet the target; target NULL: all. */
+uint32_t dec_target_vertices(const pmesh_decoder *dec,
+                             const pmesh_target *target);
+
+/* Bytes and layout of changed's arrays, as pmesh_codec_bind(). */
+uint64_t dec_changed_bind(dec_changed *changed, const pmesh_header_chunk *header,
+                          void *block);
+
+/* Mesh vertex v as it is visible; value `attribute` of output vertex w. */
+void dec_position(const pmesh_decoder *dec, uint32_t v, float xyz[3]);
+void dec_value(const pmesh_decoder *dec, uint32_t attribute, uint32_t w,
+               float value[PMESH_MAX_COMPONENTS]);
+
+/* Brings the caller's buffers up to date with what is marked as changed. */
+void dec_write_bound(const pmesh_decoder *dec);
+
+static inline uint32_t dec_mesh_vertex(const pmesh_decoder *dec, uint32_t w)
+{
+    return dec->codec.mesh.wedge ? dec->codec.mesh.wedge_vertex[w] : w;
+}
 
 /* Faces, and output vertices, of the visible mesh's first n vertices. */
 uint32_t dec_faces_at(const pmesh_decoder *dec, uint32_t vertices);

@@ -178,18 +178,22 @@ static uint32_t begin(pmesh_scene *s, uint64_t *faces)
     return count;
 }
 
-/* How fine the mesh may become in its next step. */
-static uint32_t next_faces(const dec_scene_mesh *mesh,
-                           const pmesh_scene_target *target)
+/* How fine the mesh may become in its next step: a level, which may add no
+ * face, or what there is of one. False if that is where it stands. */
+static bool next_step(const dec_scene_mesh *mesh,
+                      const pmesh_scene_target *target, uint32_t *faces)
 {
     const uint32_t next = mesh->level + 1;
-    if (next < mesh->levels)
-        return target->bytes == 0 || mesh->level_end[next] <= target->bytes
-                   ? mesh->decoder->header.levels[next].faces
-                   : mesh->faces;
-    return target->bytes == 0
-               ? pmesh_decoder_progress(mesh->decoder).faces
-               : mesh->faces;
+    *faces = mesh->faces;
+    if (next < mesh->levels) {
+        if (target->bytes > 0 && mesh->level_end[next] > target->bytes)
+            return false;
+        *faces = mesh->decoder->header.levels[next].faces;
+        return true;
+    }
+    if (target->bytes == 0)
+        *faces = pmesh_decoder_progress(mesh->decoder).faces;
+    return *faces > mesh->faces;
 }
 
 static void share(pmesh_scene *s, const pmesh_scene_target *target)
@@ -202,7 +206,9 @@ static void share(pmesh_scene *s, const pmesh_scene_target *target)
         dec_scene_mesh *mesh = &s->mesh[worst];
         if (target->error > 0 && world_error(s, worst) <= target->error)
             break;
-        const uint32_t more = next_faces(mesh, target) - mesh->faces;
+        uint32_t goal;
+        const bool finer = next_step(mesh, target, &goal);
+        const uint32_t more = goal - mesh->faces;
         const uint64_t left = target->faces == 0        ? UINT64_MAX
                               : target->faces > faces ? target->faces - faces
                                                       : 0;
@@ -211,7 +217,7 @@ static void share(pmesh_scene *s, const pmesh_scene_target *target)
         faces += step;
         if (step < more)
             break;
-        if (step > 0 && mesh->level + 1 < mesh->levels)
+        if (finer && mesh->level + 1 < mesh->levels)
             mesh->level++;
         else /* it cannot become finer */
             s->heap[0] = s->heap[--count];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * dec_scene_part.c - which chunks may come when, and where their bytes go
- * (SPEC 8).
+ * (SPEC 11).
  */
 #include <string.h>
 
@@ -17,9 +17,9 @@ static pmesh_status corrupt(pmesh_scene *s, const char *rule)
 static pmesh_status begin_header(pmesh_scene *s)
 {
     if (s->has_header)
-        return corrupt(s, "SPEC 8.1: a second header");
+        return corrupt(s, "SPEC 11.1: a second header");
     if (s->size > PMESH_MAX_SCENE_HEADER)
-        return corrupt(s, "SPEC 8.2: the header is too large");
+        return corrupt(s, "SPEC 11.2: the header is too large");
     s->header = pmesh_alloc(&s->allocator, s->size, 1);
     return s->header ? PMESH_OK
                      : dec_scene_fail(s, PMESH_E_MEMORY,
@@ -35,19 +35,19 @@ pmesh_status dec_scene_begin(pmesh_scene *s)
     if (!s->has_header)
         return type == PMESH_CHUNK_HEADER
                    ? dec_scene_fail(s, PMESH_E_UNSUPPORTED,
-                                    "SPEC 8.1: a single mesh, not a scene")
+                                    "SPEC 11.1: a single mesh, not a scene")
                    : corrupt(s, "SPEC 5.2: the first chunk is not the header");
     if (s->skipping)
         return PMESH_OK;
     if (type == PMESH_CHUNK_END)
         return s->size == 0 ? PMESH_OK
-                            : corrupt(s, "SPEC 8.1: the end is not empty");
+                            : corrupt(s, "SPEC 11.1: the end is not empty");
     if (type != PMESH_CHUNK_PART)
         return dec_scene_fail(s, PMESH_E_VERSION,
-                              "SPEC 8.1: an unknown critical chunk");
+                              "SPEC 11.1: an unknown critical chunk");
     return s->size <= s->head.chunk_size
                ? PMESH_OK
-               : corrupt(s, "SPEC 8.2: a chunk larger than the header "
+               : corrupt(s, "SPEC 11.2: a chunk larger than the header "
                             "declares");
 }
 
@@ -162,7 +162,7 @@ static pmesh_status take_bytes(pmesh_scene *s, dec_scene_part *part,
                                const uint8_t *data, size_t size)
 {
     if (size > part->size - part->received)
-        return corrupt(s, "SPEC 8.3: more bytes than the part has");
+        return corrupt(s, "SPEC 11.3: more bytes than the part has");
     if (part->data)
         memcpy(part->data + part->received, data, size);
     part->received += size;
@@ -202,7 +202,7 @@ static pmesh_status take_mesh(pmesh_scene *s, uint32_t number,
     dec_scene_mesh *mesh = &s->mesh[number];
 
     if (size > s->stream[number].size - mesh->received)
-        return corrupt(s, "SPEC 8.3: more bytes than the part has");
+        return corrupt(s, "SPEC 11.3: more bytes than the part has");
     if (!mesh->decoder) {
         const pmesh_status status = begin_mesh(s, mesh);
         if (status != PMESH_OK)
@@ -228,7 +228,7 @@ static pmesh_status take_part(pmesh_scene *s)
 
     if (in.overrun || size == 0 ||
         number > (uint64_t)h->mesh_count + h->resource_count)
-        return corrupt(s, "SPEC 8.3: a part that is not there, or no bytes");
+        return corrupt(s, "SPEC 11.3: a part that is not there, or no bytes");
     if (number == 0)
         return take_bytes(s, &s->document, in.next, size);
     if (number <= h->mesh_count)
@@ -248,10 +248,10 @@ static pmesh_status take_end(pmesh_scene *s)
                 s->mesh[i].decoder &&
                 pmesh_decoder_progress(s->mesh[i].decoder).complete;
     if (!whole)
-        return corrupt(s, "SPEC 8.3: the end comes before all parts");
+        return corrupt(s, "SPEC 11.3: the end comes before all parts");
     return s->hash == s->head.content_hash
                ? PMESH_OK
-               : corrupt(s, "SPEC 8.2: the content hash does not match");
+               : corrupt(s, "SPEC 11.2: the content hash does not match");
 }
 
 pmesh_status dec_scene_finish(pmesh_scene *s)

@@ -119,7 +119,7 @@ static pmesh_status step(pmesh_decoder *dec, const uint8_t **data,
 pmesh_status pmesh_decoder_feed(pmesh_decoder *dec, const void *data,
                                 size_t size)
 {
-    const uint8_t *next = data;
+    const uint8_t *next = (const uint8_t *)data;
     if (!dec || (!data && size > 0))
         return PMESH_E_ARGUMENT;
     while (dec->error.status >= 0 && dec->stage != DEC_END && size > 0)

@@ -93,6 +93,8 @@ typedef struct pmesh_header {
     pmesh_profile profile;
     pmesh_placement placement;
     pmesh_base_coder base_coder;
+    int joined;             /* non-zero: sheets and pieces may meet in a mesh
+                               vertex, and part at finer levels */
     pmesh_grid grid;
     int32_t bounds[3];      /* largest grid coordinate of each axis */
     uint32_t faces;
@@ -132,11 +134,14 @@ pmesh_decoder_progress(const pmesh_decoder *dec);
  *   error   the coarsest complete level whose error is at most this; model
  *           units; if none is decoded, the finest
  *   bytes   the levels that the first `bytes` bytes of the file hold
+ *   max_ops splits to show or hide in one call, for a budget per frame
+ *           (tests/bench/refine.sh measures what one costs)
  */
 typedef struct pmesh_target {
     uint32_t faces;
     double error;
     uint64_t bytes;
+    uint32_t max_ops;
 } pmesh_target;
 
 typedef struct pmesh_range {
@@ -144,9 +149,12 @@ typedef struct pmesh_range {
 } pmesh_range;
 
 /*
- * What a refine() changed: upload these and nothing else. Sorted, disjoint,
- * in elements (vertices, index triples); beyond the buffers' new ends nothing
- * is listed.
+ * What a refine() changed, and feed() since the refine() before it (the base
+ * mesh, exact positions): upload these and nothing else. Sorted, disjoint, in
+ * elements (output vertices, index triples); beyond the buffers' new ends
+ * nothing is listed. Every range begins and ends with an element that changed;
+ * if there are more runs of those than ranges, the narrowest gaps between them
+ * are listed, too.
  */
 #define PMESH_MAX_RANGES 64
 typedef struct pmesh_changes {
@@ -158,7 +166,8 @@ typedef struct pmesh_changes {
 /*
  * Moves the visible mesh to the target. target NULL: all that is decoded.
  * changes: NULL or filled. Exact to one face (two where a split adds two).
- * Returns PMESH_OK, or PMESH_NEED_DATA while no base mesh has been decoded.
+ * Returns PMESH_OK at the target, PMESH_MORE if max_ops ended the way to it, or
+ * PMESH_NEED_DATA while no base mesh has been decoded.
  */
 PMESH_API pmesh_status pmesh_decoder_refine(pmesh_decoder *dec,
                                             const pmesh_target *target,
@@ -183,6 +192,45 @@ PMESH_API pmesh_status pmesh_decoder_mesh(const pmesh_decoder *dec,
                                           pmesh_view *out);
 
 /*
+ * Memory of the caller that refine() keeps equal to the visible mesh: mapped
+ * buffers of a graphics card, say. It is written, never read, and nothing but
+ * what `changes` would list. NULL: that part is not wanted.
+ */
+typedef struct pmesh_buffers {
+    void *indices;        /* 3 per face, for header.faces */
+    uint32_t index_size;  /* of one index: 4, or 2 if header.vertices is at most
+                             65536; 0 stands for 4 */
+    float *positions;     /* 3 floats each, for header.vertices */
+    size_t position_stride; /* bytes from one to the next; 0: packed */
+    float *attributes[PMESH_MAX_ATTRIBUTES]; /* `components` floats each */
+    size_t attribute_strides[PMESH_MAX_ATTRIBUTES];
+} pmesh_buffers;
+
+/*
+ * Binds the caller's buffers, of which the decoder keeps a copy of the
+ * pointers, and writes what is visible. buffers NULL: none from now on. The
+ * memory must stay until then, or until the decoder is destroyed.
+ *
+ * Returns PMESH_OK, PMESH_NEED_DATA before the header (nothing is bound), or
+ * E_ARGUMENT: indices too small, a stride shorter than its tuple, or an
+ * attribute that the file lacks.
+ */
+PMESH_API pmesh_status pmesh_decoder_bind(pmesh_decoder *dec,
+                                          const pmesh_buffers *buffers);
+
+/*
+ * Copies the visible faces sorted by material, for one draw call each:
+ * `groups`, of header.material_count, gets the triples of each material (NULL:
+ * not wanted). index_size as above; the buffer holds view.face_count triples.
+ * Within a material the faces keep their order. Returns PMESH_OK, NEED_DATA, or
+ * E_ARGUMENT.
+ */
+PMESH_API pmesh_status pmesh_decoder_copy_indices(const pmesh_decoder *dec,
+                                                  void *dst,
+                                                  uint32_t index_size,
+                                                  pmesh_range *groups);
+
+/*
  * Dequantises into the caller's memory, one tuple per output vertex of the
  * visible mesh, `stride` bytes apart (0: packed). The buffer must hold
  * view.vertex_count tuples. Returns PMESH_OK, NEED_DATA, or E_ARGUMENT.
@@ -192,8 +240,8 @@ PMESH_API pmesh_status pmesh_decoder_mesh(const pmesh_decoder *dec,
  * budget; where vertices move (PMESH_OPTIMAL), only if it stands on the grid
  * point where the full mesh has it, as all do at full detail. Others get their
  * grid point, at most 0.87 steps away. So when exact_vertices has grown from a
- * to b, positions of mesh vertices a .. b - 1 are to be copied again; refine()
- * does not list them.
+ * to b, positions of mesh vertices a .. b - 1 are to be copied again; the next
+ * refine() lists them.
  */
 PMESH_API pmesh_status pmesh_decoder_copy_positions(const pmesh_decoder *dec,
                                                     float *dst, size_t stride);
@@ -220,11 +268,55 @@ PMESH_API const char *pmesh_decoder_material_name(const pmesh_decoder *dec,
                                                   uint32_t material);
 
 /*
- * Number of splits visible of the vertex tree and the parent of a mesh vertex
- * (UINT32_MAX for base vertices): a geomorph slides a vertex from there.
+ * The vertex that a mesh vertex was split from; UINT32_MAX for vertices of the
+ * base mesh and those not decoded. A parent has the smaller number.
  */
 PMESH_API uint32_t pmesh_decoder_parent(const pmesh_decoder *dec,
                                         uint32_t mesh_vertex);
+
+/*
+ * For geomorphs: where the output vertices of the visible mesh lie on the
+ * coarser mesh `coarse` (max_ops has no meaning), as copy_positions(). A vertex
+ * that the coarse mesh lacks lies at its nearest ancestor there.
+ *
+ * Blend: position = from + t * (to - from), `from` by this call and `to` by
+ * copy_positions(). With t = 0 the visible mesh covers the coarse one, the
+ * faces that are not there having no area; with t = 1 it is itself. Draw the
+ * visible mesh for 0 < t <= 1 and step t evenly over some 200 to 500 ms, or by
+ * the distance to the camera. Attributes are not blended: a vertex has its own
+ * from the start.
+ *
+ * Returns PMESH_OK, NEED_DATA, or E_ARGUMENT. The visible mesh is the same
+ * afterwards; the work is that of a refine() to `coarse` and back.
+ */
+PMESH_API pmesh_status pmesh_decoder_copy_morph(pmesh_decoder *dec,
+                                                const pmesh_target *coarse,
+                                                float *dst, size_t stride);
+
+/*
+ * Box around the visible mesh, in model units. Every visible mesh lies in the
+ * box of the grid: grid.origin to grid.origin + grid.step * bounds.
+ */
+PMESH_API pmesh_status pmesh_decoder_bounds(const pmesh_decoder *dec,
+                                            double minimum[3],
+                                            double maximum[3]);
+
+/* Where a ray meets the visible mesh. */
+typedef struct pmesh_hit {
+    uint32_t face;
+    double distance;  /* in lengths of the direction */
+    double weight[3]; /* of the face's corners; their sum is 1 */
+} pmesh_hit;
+
+/*
+ * The first face that the ray meets, from either side, at a distance of 0 or
+ * more. Tests every visible face (grid positions): for a click, not for every
+ * pixel. Returns 1 and fills *hit, or 0: nothing met, no mesh, or a direction
+ * of no length.
+ */
+PMESH_API int pmesh_decoder_raycast(const pmesh_decoder *dec,
+                                    const double origin[3],
+                                    const double direction[3], pmesh_hit *hit);
 
 #ifdef __cplusplus
 }

@@ -30,6 +30,8 @@ typedef struct wedger {
     uint32_t corner_count;
     uint32_t vertex_count;
     uint32_t *start;   /* per vertex: its first corner */
+    uint32_t *next;    /* per corner: the next of its vertex; NULL unless a
+                          vertex may have several fans */
     uint32_t *valence; /* per vertex: how many corners */
     size_t slot_count; /* a power of two, for the largest valence */
     wedge_slot *slot;
@@ -241,35 +243,48 @@ static uint32_t first_alike(wedger *w, uint32_t vertex, uint32_t corner,
     return corner;
 }
 
+/* The corners of a fan of v, of which `corner` is one. */
+static void number_fan(wedger *w, uint32_t v, uint32_t corner, size_t mask,
+                       uint32_t *count)
+{
+    const uint32_t *twin = w->mesh->twin;
+    uint32_t *wedge = w->mesh->wedge;
+    uint32_t begin = corner, before = ENC_NONE;
+
+    while (twin[begin] != ENC_NONE) {
+        begin = enc_next_corner(twin[begin]);
+        if (begin == corner)
+            break;
+    }
+    uint32_t x = begin;
+    do {
+        if (before != ENC_NONE && same_tuples(w, before, x)) {
+            wedge[x] = wedge[before];
+        } else {
+            const uint32_t alike = first_alike(w, v, x, mask);
+            wedge[x] = alike == x ? (*count)++ : wedge[alike];
+        }
+        before = x;
+        x = twin[enc_previous_corner(x)];
+    } while (x != ENC_NONE && x != begin);
+}
+
 /* Wedges are numbered vertex by vertex, and around each counter-clockwise:
  * without seams they have the numbers of their vertices. */
 static void number_wedges(wedger *w)
 {
-    const uint32_t *twin = w->mesh->twin;
     uint32_t *wedge = w->mesh->wedge;
     uint32_t count = 0;
 
+    memset(wedge, 0xff, w->corner_count * sizeof *wedge);
     for (uint32_t v = 0; v < w->vertex_count; v++) {
         size_t slots = 4;
         while (slots < 2 * (size_t)w->valence[v])
             slots *= 2;
-        uint32_t begin = w->start[v];
-        while (twin[begin] != ENC_NONE) {
-            begin = enc_next_corner(twin[begin]);
-            if (begin == w->start[v])
-                break;
-        }
-        uint32_t x = begin, before = ENC_NONE;
-        do {
-            if (before != ENC_NONE && same_tuples(w, before, x)) {
-                wedge[x] = wedge[before];
-            } else {
-                const uint32_t alike = first_alike(w, v, x, slots - 1);
-                wedge[x] = alike == x ? count++ : wedge[alike];
-            }
-            before = x;
-            x = twin[enc_previous_corner(x)];
-        } while (x != ENC_NONE && x != begin);
+        for (uint32_t c = w->start[v]; c != ENC_NONE;
+             c = w->next ? w->next[c] : ENC_NONE)
+            if (wedge[c] == ENC_NONE)
+                number_fan(w, v, c, slots - 1, &count);
     }
     w->mesh->wedge_count = count;
 }
@@ -282,9 +297,14 @@ static pmesh_status find_wedges(wedger *w)
 
     w->start = pmesh_alloc(a, w->vertex_count, sizeof *w->start);
     w->valence = pmesh_alloc_zero(a, w->vertex_count, sizeof *w->valence);
-    if (!w->start || !w->valence)
+    if (w->mesh->joined)
+        w->next = pmesh_alloc(a, w->corner_count, sizeof *w->next);
+    if (!w->start || !w->valence || (w->mesh->joined && !w->next))
         return PMESH_E_MEMORY;
+    memset(w->start, 0xff, w->vertex_count * sizeof *w->start);
     for (uint32_t corner = w->corner_count; corner-- > 0;) {
+        if (w->next)
+            w->next[corner] = w->start[vertex[corner]];
         w->start[vertex[corner]] = corner;
         if (++w->valence[vertex[corner]] > largest)
             largest = w->valence[vertex[corner]];
@@ -365,6 +385,7 @@ pmesh_status enc_wedges(enc_mesh *mesh, const pmesh_mesh_input *in,
     const pmesh_status status = build_wedges(&w, in, config, repaired);
     pmesh_release(a, w.slot, w.slot_count, sizeof *w.slot);
     pmesh_release(a, w.valence, w.vertex_count, sizeof *w.valence);
+    pmesh_release(a, w.next, w.corner_count, sizeof *w.next);
     pmesh_release(a, w.start, w.vertex_count, sizeof *w.start);
     for (uint32_t i = 0; i < w.channel_count; i++)
         close_channel(&w, &w.channels[i]);

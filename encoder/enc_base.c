@@ -13,8 +13,11 @@ enum { SIZE_ROOM = 5 }; /* of a varint below 2^35 */
 
 /* The base mesh with numbers of its own, and where they come from. */
 typedef struct base_mesh {
-    pmesh_mesh mesh;
+    pmesh_mesh mesh; /* joined: of which each vertex is one fan */
     uint32_t edge_count;
+    size_t room;      /* for its vertices */
+    uint32_t *point;  /* joined, per fan: its vertex, as below */
+    uint32_t *point_vertex; /* and of each of these the codec's number */
     uint32_t *corner; /* per half-edge: of the import */
     uint32_t *vertex; /* per vertex of the import: of the base, or ENC_NONE */
     uint32_t *source; /* per base vertex: of the import */
@@ -30,12 +33,14 @@ static void base_free(base_mesh *b, const enc_replay *r)
     const size_t n = r->base_vertices, edges = b->edge_count;
     pmesh_release(a, b->mesh.vertex, edges, 4);
     pmesh_release(a, b->mesh.twin, edges, 4);
-    pmesh_release(a, b->mesh.position, n, sizeof *b->mesh.position);
+    pmesh_release(a, b->mesh.position, b->room, sizeof *b->mesh.position);
+    pmesh_release(a, b->point, b->room, 4);
+    pmesh_release(a, b->point_vertex, n, 4);
     pmesh_release(a, b->corner, edges, 4);
     pmesh_release(a, b->vertex, r->mesh->vertex_count, 4);
     pmesh_release(a, b->source, n, 4);
     pmesh_release(a, b->edge_of_codec, edges, 4);
-    pmesh_release(a, b->codec_vertex, n, 4);
+    pmesh_release(a, b->codec_vertex, b->room, 4);
     pmesh_release(a, b->table, (size_t)b->table_size, 4);
 }
 
@@ -45,12 +50,18 @@ static bool base_allocate(base_mesh *b, const enc_replay *r)
     const size_t n = r->base_vertices, edges = b->edge_count;
     b->mesh.vertex = pmesh_alloc(a, edges, 4);
     b->mesh.twin = pmesh_alloc(a, edges, 4);
-    b->mesh.position = pmesh_alloc(a, n, sizeof *b->mesh.position);
+    b->mesh.position = pmesh_alloc(a, b->room, sizeof *b->mesh.position);
+    if (r->mesh->joined) {
+        b->point = pmesh_alloc(a, b->room, 4);
+        b->point_vertex = pmesh_alloc(a, n, 4);
+        if (!b->point || !b->point_vertex)
+            return false;
+    }
     b->corner = pmesh_alloc(a, edges, 4);
     b->vertex = pmesh_alloc(a, r->mesh->vertex_count, 4);
     b->source = pmesh_alloc(a, n, 4);
     b->edge_of_codec = pmesh_alloc(a, edges, 4);
-    b->codec_vertex = pmesh_alloc(a, n, 4);
+    b->codec_vertex = pmesh_alloc(a, b->room, 4);
     b->table = pmesh_alloc(a, (size_t)b->table_size, 4);
     return b->mesh.vertex && b->mesh.twin && b->mesh.position && b->corner &&
            b->vertex && b->source && b->edge_of_codec && b->codec_vertex &&
@@ -107,15 +118,60 @@ static void base_pair(base_mesh *b)
                                            b->mesh.vertex[h])];
 }
 
+/* Twins are what the import's have become. */
+static void joined_pair(base_mesh *b, enc_replay *r)
+{
+    for (uint32_t f = 0; f < r->base_faces; f++)
+        r->face_of[b->corner[3 * f] / 3] = f;
+    for (uint32_t h = 0; h < b->edge_count; h++) {
+        const uint32_t t = enc_part_twin(r, b->corner[h]);
+        b->mesh.twin[h] =
+            t == ENC_NONE ? ENC_NONE : 3 * r->face_of[t / 3] + t % 3;
+    }
+}
+
+/* Each fan becomes a vertex of the base; `point` tells which it was. */
+static void split_fans(base_mesh *b, const enc_replay *r)
+{
+    pmesh_mesh *m = &b->mesh;
+    uint32_t count = 0;
+    memset(b->edge_of_codec, 0xff, b->edge_count * sizeof *b->edge_of_codec);
+    for (uint32_t c = 0; c < b->edge_count; c++) {
+        uint32_t h = c;
+        if (b->edge_of_codec[c] != ENC_NONE) /* scratch: corners done */
+            continue;
+        while (m->twin[h] != ENC_NONE) {
+            h = pmesh_next(m->twin[h]);
+            if (h == c)
+                break;
+        }
+        const uint32_t start = h;
+        b->point[count] = m->vertex[c];
+        do {
+            b->edge_of_codec[h] = m->vertex[h] = count;
+            h = pmesh_turn_left(m, h);
+        } while (h != ENC_NONE && h != start);
+        b->codec_vertex[count++] = PMESH_NONE;
+    }
+    memset(b->point_vertex, 0xff, r->base_vertices * sizeof *b->point_vertex);
+    for (uint32_t fan = count; fan-- > 0;) /* positions were by point */
+        memcpy(m->position[fan], r->position[b->source[b->point[fan]]],
+               sizeof *m->position);
+    m->vertex_count = count;
+}
+
 /* The shape is known: attributes, and all that follows, need the maps. */
 static void fill_maps(enc_replay *r, const base_mesh *b)
 {
     for (uint32_t h = 0; h < b->edge_count; h++)
         r->corner_of[h] = b->corner[b->edge_of_codec[h]];
+    const uint32_t *number = b->point ? b->point_vertex : b->codec_vertex;
     for (uint32_t i = 0; i < r->base_vertices; i++) {
-        r->vertex_of[b->codec_vertex[i]] = b->source[i];
-        r->born[b->source[i]] = b->codec_vertex[i];
+        r->vertex_of[number[i]] = b->source[i];
+        r->born[b->source[i]] = number[i];
     }
+    if (b->point)
+        enc_part_number(r, 0, r->base_faces);
 }
 
 static pmesh_status code_natively(enc_replay *r, const base_mesh *b,
@@ -125,6 +181,10 @@ static pmesh_status code_natively(enc_replay *r, const base_mesh *b,
     oracle.base = &b->mesh;
     oracle.base_edge = b->edge_of_codec;
     oracle.base_vertex = b->codec_vertex;
+    oracle.base_point = b->point;
+    oracle.point_vertex = b->point_vertex;
+    if (b->point)
+        r->codec.sizes.base_fans = b->mesh.vertex_count;
     return pmesh_base_code(&r->codec, coder, &oracle, r->base_vertices,
                            r->base_faces);
 }
@@ -181,8 +241,13 @@ static pmesh_status code_base(enc_replay *r, base_mesh *b,
     bool done = false;
     pmesh_status status = PMESH_OK;
     base_fill(b, r);
-    base_pair(b);
-    if (config->base_coder == PMESH_BASE_DRACO)
+    if (b->point) {
+        joined_pair(b, r);
+        split_fans(b, r);
+    } else {
+        base_pair(b);
+    }
+    if (config->base_coder == PMESH_BASE_DRACO && !b->point)
         status = code_by_draco(r, b, config, out, &done);
     r->base_coder = done ? PMESH_BASE_DRACO : PMESH_BASE_NATIVE;
     pmesh_coder_encode(&coder, out);
@@ -202,6 +267,8 @@ pmesh_status enc_replay_base(enc_replay *r, const pmesh_encoder_config *config,
                              pmesh_writer *out)
 {
     base_mesh b = { .edge_count = 3 * r->base_faces,
+                    .room = r->mesh->joined ? 3 * (size_t)r->base_faces
+                                            : r->base_vertices,
                     .table_size = pmesh_base_scratch(r->base_faces) };
     enc_replay_label(r, r->schedule->contraction_count);
     const pmesh_status status = base_allocate(&b, r)

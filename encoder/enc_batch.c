@@ -14,7 +14,9 @@ enum {
     MAY_BACK = 2,
     UNCLEAN_FORTH = 4,
     UNCLEAN_BACK = 8,
-    TURNED = 16 /* the second direction has been queued as well */
+    TURNED = 16, /* the second direction has been queued as well */
+    GENERAL = 32, /* a pair for enc_join.h */
+    LATE = 64     /* may spoil faces, when there is little else */
 };
 
 /* Puts a pair parallel to a chosen one before all that are not. */
@@ -30,11 +32,15 @@ enum {
  * a batch that is full to this share takes none. */
 #define CLEAN_SHARE 0.5
 
+/* Sheets are joined from where this share of the vertices wants it. */
+#define SHEETS_SHARE 0.5
+
 enum { PROGRESS_INTERVAL = 1 << 16 };
 
 bool enc_run_done(const enc_run *run)
 {
-    return run->cancelled || run->surface.face_count <= run->face_target ||
+    return run->cancelled || run->starved ||
+           run->surface.face_count <= run->face_target ||
            run->surface.vertex_count <= run->vertex_target;
 }
 
@@ -67,12 +73,28 @@ static bool unclean(uint8_t state, bool back)
     return state & (back ? UNCLEAN_BACK : UNCLEAN_FORTH);
 }
 
+/* A number h beyond the half-edges stands for a pair without edge. */
+static enc_pair pair_of(const enc_run *run, uint32_t h, bool back)
+{
+    const uint32_t edges = 3 * run->mesh->face_count;
+    enc_pair pair;
+    if (h < edges) {
+        pair = enc_surface_pair(&run->surface, h, back);
+    } else {
+        const uint32_t *end = run->near.pair[h - edges];
+        pair = (enc_pair){ end[back], end[!back], ENC_NONE, ENC_NONE };
+    }
+    if (run->edge_state[h] & GENERAL)
+        pair.left = pair.right = ENC_NONE;
+    return pair;
+}
+
 /* Its estimated quadric goes to *quadric. */
 static enc_entry make_entry(const enc_run *run, uint32_t h, bool back,
                             double *quadric)
 {
     const enc_surface *s = &run->surface;
-    const enc_pair pair = enc_surface_pair(s, h, back);
+    const enc_pair pair = pair_of(run, h, back);
     const uint32_t last = unclean(run->edge_state[h], back) ? ENC_KEY_LAST : 0;
     const enc_offer offer = enc_pricing_estimate(&run->pricing, s, &pair);
 
@@ -101,9 +123,20 @@ static uint8_t examine_edge(const enc_surface *s, uint32_t h)
     return (uint8_t)state;
 }
 
-static void queue_edge(enc_run *run, uint32_t h)
+static uint8_t examine_general(const enc_surface *s, uint32_t u, uint32_t v)
 {
-    const uint8_t state = examine_edge(&run->surface, h);
+    const bool u_outer = enc_on_boundary(s, u), v_outer = enc_on_boundary(s, v);
+    enc_link link;
+    if (!enc_join_link(s, u, v, &link))
+        return 0;
+    return (uint8_t)(
+        GENERAL |
+        ((!u_outer || v_outer) && !link.held[0] ? MAY_FORTH : 0) |
+        ((!v_outer || u_outer) && !link.held[1] ? MAY_BACK : 0));
+}
+
+static void queue_pair(enc_run *run, uint32_t h, uint8_t state)
+{
     enc_entry best = { UINT32_MAX, 0 };
     double best_quadric = 0;
 
@@ -118,9 +151,59 @@ static void queue_edge(enc_run *run, uint32_t h)
             best_quadric = quadric;
         }
     }
-    if (state) {
+    if (best.key < UINT32_MAX) {
         enc_queue_add(&run->queue, best);
         enc_quantile_add(&run->quadrics, best_quadric);
+    }
+}
+
+/* Of a joined mesh, what the rules for manifolds forbid may still do. */
+static void queue_edge(enc_run *run, uint32_t h)
+{
+    const enc_surface *s = &run->surface;
+    const bool general = s->fan && enc_join_is_general(s, h);
+    uint8_t state = general ? 0 : examine_edge(s, h);
+    if (s->fan && state == 0 && enc_join_is_lowest(s, h))
+        state = examine_general(s, s->vertex[h], s->vertex[enc_next(h)]);
+    queue_pair(run, h, state);
+}
+
+/* Where a vertex of the mesh is now. */
+static uint32_t survivor(const enc_run *run, uint32_t v)
+{
+    const enc_schedule *out = run->out;
+    while (out->vertex_end[v] != ENC_NONE)
+        v = out->contraction[out->vertex_end[v]].parent;
+    return v;
+}
+
+/* True if v and w have an edge. */
+static bool are_linked(enc_surface *s, uint32_t v, uint32_t w)
+{
+    enc_surface_mark_ring(s, v);
+    return s->mark[w] == s->stamp;
+}
+
+/* Those by distance are followed to where they went; those between sheets are
+ * made anew, if it is time for them. */
+static void queue_near(enc_run *run)
+{
+    enc_surface *s = &run->surface;
+    enc_near *near = &run->near;
+    near->count = run->within;
+    for (uint32_t i = 0; i < run->within; i++)
+        for (int k = 0; k < 2; k++)
+            near->pair[i][k] = survivor(run, near->pair[i][k]);
+    run->starved = enc_near_sheets(s, near) != PMESH_OK;
+    if (near->count - run->within > SHEETS_SHARE * s->vertex_count)
+        run->joins_sheets = true;
+    if (!run->joins_sheets)
+        near->count = run->within;
+    for (uint32_t i = 0; i < near->count; i++) {
+        const uint32_t v = near->pair[i][0], w = near->pair[i][1];
+        if (v != w && !are_linked(s, v, w))
+            queue_pair(run, 3 * run->mesh->face_count + i,
+                       examine_general(s, v, w));
     }
 }
 
@@ -131,17 +214,17 @@ static void collect(enc_run *run, const enc_batch_plan *plan)
     enc_queue_clear(&run->queue);
     enc_quantile_clear(&run->quadrics);
     for (uint32_t v = 0; v < run->mesh->vertex_count; v++) {
-        uint32_t h = s->first[v];
-        if (h == ENC_NONE)
+        uint32_t start = s->first[v];
+        if (start == ENC_NONE)
             continue;
         enc_surface_mark_ring(s, v);
-        do {
+        for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
             if (h < s->twin[h]) /* ENC_NONE is the largest */
                 queue_edge(run, h);
-            h = enc_turn(s, h);
-        } while (h != ENC_NONE && h != s->first[v]);
         report_progress(run);
     }
+    if (s->fan)
+        queue_near(run);
     enc_queue_sort(&run->queue);
     run->parallel_limit = PARALLEL_LIMIT * enc_queue_median(&run->queue);
     run->guard = enc_quantile_at(&run->quadrics, plan->guard);
@@ -150,6 +233,66 @@ static void collect(enc_run *run, const enc_batch_plan *plan)
 static bool is_free(const enc_run *run, uint32_t v)
 {
     return run->taken[v] != run->out->batch_count + 1;
+}
+
+static bool is_stamped(const enc_run *run, uint8_t stamp)
+{
+    return stamp == run->out->batch_count + 1;
+}
+
+static uint32_t wing_of(const enc_surface *s, uint32_t edge)
+{
+    return s->vertex[enc_prev(edge)];
+}
+
+/* See enc_batch.h; the pair's own ends are free. */
+static bool general_fits(const enc_run *run, const enc_pair *pair,
+                         const enc_link *link)
+{
+    const enc_role *child = &run->role[pair->child];
+    const enc_role *parent = &run->role[pair->parent];
+    if (link->count == 0)
+        return !is_stamped(run, child->general_wing) &&
+               !is_stamped(run, parent->general_wing);
+    for (uint32_t i = 0; i < link->count; i++)
+        if (!is_free(run, wing_of(&run->surface, link->edge[i])))
+            return false;
+    return !is_stamped(run, child->wing) && !is_stamped(run, parent->wing);
+}
+
+static bool simple_fits(const enc_run *run, const enc_pair *pair)
+{
+    const uint32_t edge[2] = { pair->left, pair->right };
+    if (!run->role)
+        return true;
+    for (int i = 0; i < 2; i++)
+        if (edge[i] != ENC_NONE &&
+            is_stamped(run,
+                       run->role[wing_of(&run->surface, edge[i])].general))
+            return false;
+    return !is_stamped(run, run->role[pair->child].general_wing) &&
+           !is_stamped(run, run->role[pair->parent].general_wing);
+}
+
+/* Before they are contracted. `link`: of a general pair. */
+static void stamp_roles(enc_run *run, const enc_pair *pair,
+                        const enc_link *link)
+{
+    const uint32_t sides[2] = { pair->left, pair->right };
+    const uint32_t *edge = link ? link->edge : sides;
+    const uint32_t count = link ? link->count : 2;
+    const uint8_t stamp = (uint8_t)(run->out->batch_count + 1);
+    for (uint32_t i = 0; i < count; i++) {
+        if (edge[i] == ENC_NONE)
+            continue;
+        enc_role *wing = &run->role[wing_of(&run->surface, edge[i])];
+        wing->wing = stamp;
+        if (link)
+            wing->general_wing = stamp;
+    }
+    if (link && link->count > 0)
+        run->role[pair->child].general = run->role[pair->parent].general =
+            stamp;
 }
 
 /* Finds the pairs to be preferred next to this one, before it goes. */
@@ -172,7 +315,7 @@ static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
         }
         const enc_pair other = enc_surface_pair(s, h, back);
         const uint8_t state = run->edge_state[h];
-        if (!may(state, back) || unclean(state, back) ||
+        if (!may(state, back) || unclean(state, back) || state & GENERAL ||
             !is_free(run, other.child) || !is_free(run, other.parent))
             continue;
         const enc_offer offer = enc_pricing_estimate(&run->pricing, s, &other);
@@ -193,8 +336,18 @@ static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
     return count;
 }
 
-static void contract(enc_run *run, const enc_pair *pair, const enc_offer *offer,
-                     double error)
+static void end_face(enc_schedule *out, uint32_t edge, uint32_t index)
+{
+    if (edge == ENC_NONE)
+        return;
+    out->face_end[edge / 3] = index;
+    if (out->face_side)
+        out->face_side[edge / 3] = (uint8_t)(edge % 3);
+}
+
+/* `link`: NULL unless the pair is a general one. */
+static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
+                     const enc_offer *offer, double error)
 {
     enc_schedule *out = run->out;
     enc_surface *s = &run->surface;
@@ -208,17 +361,25 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_offer *offer,
         .error = (float)sqrt(error),
     };
     out->vertex_end[pair->child] = index;
-    if (pair->left != ENC_NONE)
-        out->face_end[pair->left / 3] = index;
-    if (pair->right != ENC_NONE)
-        out->face_end[pair->right / 3] = index;
+    end_face(out, pair->left, index);
+    end_face(out, pair->right, index);
+    for (uint32_t i = 0; link && i < link->count; i++)
+        end_face(out, link->edge[i], index);
     run->drift[pair->parent] = (float)error;
     run->taken[pair->child] = run->taken[pair->parent] =
         (uint8_t)(out->batch_count + 1);
-    if (s->wedge)
+    if (run->role)
+        stamp_roles(run, pair, link);
+    if (s->wedge && link)
+        enc_wedges_map_link(s, pair, link, out->wedge_parent);
+    else if (s->wedge)
         enc_wedges_map(s, pair, out->wedge_parent);
     enc_pricing_contract(&run->pricing, s, pair, offer->place);
-    enc_surface_contract(s, pair, offer->place, out->wedge_parent);
+    if (link)
+        enc_join_contract(s, pair->child, pair->parent, link, offer->place,
+                          out->wedge_parent);
+    else
+        enc_surface_contract(s, pair, offer->place, out->wedge_parent);
 }
 
 /* Squared distance from the original. Memoryless quadrics see only the mesh
@@ -234,41 +395,87 @@ static double total_error(const enc_run *run, const enc_pair *pair,
     return offer->distance + (child > parent ? child : parent);
 }
 
-/* Contracts the pair of an entry if that is possible now. */
-static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
+/* What it costs now, and whether it may go at that: not if that has grown (then
+ * it goes back into the queue) or a face would flip or double (then perhaps the
+ * other way, or at the very end). `link`: of a general pair. */
+static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
+                          enc_entry entry, const enc_pair *pair,
+                          const enc_link *link, enc_offer *offer)
 {
     enc_surface *s = &run->surface;
     const uint32_t h = entry.id >> 1;
     const bool back = entry.id & 1;
 
-    if (s->vertex[h] == ENC_NONE)
-        return false;
-    const enc_pair pair = enc_surface_pair(s, h, back);
-    if (!is_free(run, pair.child) || !is_free(run, pair.parent))
-        return false;
-    enc_surface_mark_ring(s, s->vertex[h]);
-    if (!enc_surface_can_join(s, h))
-        return false;
-
-    const enc_offer offer = enc_pricing_offer(&run->pricing, s, &pair);
-    if (offer.quadric > run->guard)
+    *offer = enc_pricing_offer(&run->pricing, s, pair);
+    if (offer->quadric > run->guard)
         return false;
     if (!plan->coherent &&
-        offer.cost > STALE_FACTOR * enc_key_cost(entry.key)) {
-        const uint32_t key = enc_key(offer.cost) | (entry.key & ENC_KEY_LAST);
+        offer->cost > STALE_FACTOR * enc_key_cost(entry.key)) {
+        const uint32_t key = enc_key(offer->cost) | (entry.key & ENC_KEY_LAST);
         if (key > entry.key) {
             enc_queue_push(&run->queue, (enc_entry){ key, entry.id });
             return false;
         }
     }
-    if (enc_surface_flips(s, &pair, offer.place)) {
-        if (may(run->edge_state[h], !back) && !(run->edge_state[h] & TURNED)) {
-            run->edge_state[h] |= TURNED;
-            double quadric;
-            enc_queue_push(&run->queue, make_entry(run, h, !back, &quadric));
-        }
-        return false;
+    const bool doubles = link && link->doubles;
+    if (!doubles && !enc_surface_flips(s, pair, offer->place))
+        return true;
+    if (may(run->edge_state[h], !back) && !(run->edge_state[h] & TURNED)) {
+        run->edge_state[h] |= TURNED;
+        double quadric;
+        enc_queue_push(&run->queue, make_entry(run, h, !back, &quadric));
+    } else if (run->joins_sheets && link) {
+        if (run->edge_state[h] & LATE)
+            return true;
+        run->edge_state[h] |= LATE;
+        enc_queue_push(&run->queue, (enc_entry){ entry.key | ENC_KEY_LAST,
+                                                 entry.id });
     }
+    return false;
+}
+
+static bool try_general(enc_run *run, const enc_batch_plan *plan,
+                        enc_entry entry, const enc_pair *pair)
+{
+    const enc_surface *s = &run->surface;
+    enc_link link;
+    enc_offer offer;
+    if (s->first[pair->child] == ENC_NONE || s->first[pair->parent] == ENC_NONE)
+        return false;
+    if (!enc_join_link(s, pair->child, pair->parent, &link) || link.held[0])
+        return false;
+    if (!general_fits(run, pair, &link))
+        return false;
+    if (!is_acceptable(run, plan, entry, pair, &link, &offer))
+        return false;
+    const double error = total_error(run, pair, &offer);
+    if (error > run->error_limit)
+        return false;
+    contract(run, pair, &link, &offer, error);
+    return true;
+}
+
+/* Contracts the pair of an entry if that is possible now. */
+static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
+{
+    enc_surface *s = &run->surface;
+    const uint32_t h = entry.id >> 1;
+    const bool back = entry.id & 1, general = run->edge_state[h] & GENERAL;
+
+    if (h < 3 * run->mesh->face_count && s->vertex[h] == ENC_NONE)
+        return false;
+    const enc_pair pair = pair_of(run, h, back);
+    if (!is_free(run, pair.child) || !is_free(run, pair.parent))
+        return false;
+    if (general)
+        return try_general(run, plan, entry, &pair);
+    enc_surface_mark_ring(s, s->vertex[h]);
+    if (!enc_surface_can_join(s, h) || !simple_fits(run, &pair))
+        return false;
+
+    enc_offer offer;
+    if (!is_acceptable(run, plan, entry, &pair, NULL, &offer))
+        return false;
     const double error = total_error(run, &pair, &offer);
     if (error > run->error_limit)
         return false;
@@ -276,7 +483,7 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
     enc_entry parallel[4];
     const unsigned count =
         plan->coherent ? find_parallel(run, &pair, plan->turn, parallel) : 0;
-    contract(run, &pair, &offer, error);
+    contract(run, &pair, NULL, &offer, error);
     for (unsigned i = 0; i < count; i++)
         enc_queue_push(&run->queue, parallel[i]);
     return true;

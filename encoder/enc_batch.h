@@ -8,11 +8,19 @@
  * the pairs independent: whether two disturb each other (opposite sides of a
  * quad that has no diagonal; a ring that would get too small) shows in the one
  * that comes last, and never depends on a third.
+ *
+ * Of a joined mesh, a pair that enc_join.h is for and the others of the batch
+ * share no face, neither one that dies nor one at an end: what dies of the one
+ * is not at an end of the other. Then the fans of its ends, all that it depends
+ * on, are the same whether others are contracted or not. Only vertices that
+ * become one without a face that dies are content with less.
  */
 #ifndef ENC_BATCH_H
 #define ENC_BATCH_H
 
 #include "encoder/enc_candidate.h"
+#include "encoder/enc_join.h"
+#include "encoder/enc_near.h"
 #include "encoder/enc_quantile.h"
 #include "encoder/enc_queue.h"
 #include "encoder/enc_schedule.h"
@@ -28,6 +36,13 @@ typedef struct enc_batch_plan {
                        the smallest; 1: any */
 } enc_batch_plan;
 
+/* What a vertex is in the batch, of a joined mesh: batch_count + 1 if it is. */
+typedef struct enc_role {
+    uint8_t general;      /* in a general pair, of which a face dies */
+    uint8_t wing;         /* of a face that dies, */
+    uint8_t general_wing; /* of such a pair */
+} enc_role;
+
 /* A contraction run; batches leave their mark in `out`. */
 typedef struct enc_run {
     const enc_mesh *mesh;
@@ -38,17 +53,26 @@ typedef struct enc_run {
     enc_queue queue;
     enc_quantile quadrics; /* of the edges, the better direction */
     double guard;
-    uint8_t *edge_state; /* per half-edge: what collecting found */
+    uint8_t *edge_state; /* per half-edge, and then per pair of `near`: what
+                            collecting found */
+    enc_near near;       /* pairs without an edge; the first `within` of them
+                            by the vertices of the mesh */
+    uint32_t within;
+    bool joins_sheets;   /* edges alone do not lead much further: closest
+                            vertices of small sheets are pairs, too */
     uint8_t *taken;      /* per vertex: batch_count when last in a pair, + 1 */
+    enc_role *role;      /* per vertex; NULL unless joined */
     float *drift;        /* per vertex: squared distance from the original */
     uint32_t face_target, vertex_target;
     double error_limit;    /* squared, in steps */
     double parallel_limit; /* cost up to which parallel pairs are preferred */
     uint32_t tick;         /* candidates seen, for progress */
     bool cancelled;
+    bool starved; /* out of memory */
 } enc_run;
 
-/* True once the base mesh is reached, or the caller has cancelled. */
+/* True once the base mesh is reached, the caller has cancelled, or there is no
+ * memory left. */
 bool enc_run_done(const enc_run *run);
 
 /* Contracts up to plan->limit pairs; appends them to the schedule's list, but

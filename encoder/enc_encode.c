@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "encoder/enc_exact.h"
+#include "encoder/enc_import.h"
 #include "encoder/enc_inflate.h"
 #include "encoder/enc_mesh.h"
 #include "encoder/enc_replay.h"
@@ -53,6 +54,7 @@ static bool config_is_sound(const pmesh_encoder_config *c)
            within(c->placement, PMESH_SUBSET, PMESH_OPTIMAL) &&
            within(c->metric, PMESH_MEMORYLESS, PMESH_ACCUMULATED) &&
            within(c->base_coder, PMESH_BASE_NATIVE, PMESH_BASE_DRACO) &&
+           within(c->topology, PMESH_TOPOLOGY_AUTO, PMESH_TOPOLOGY_JOIN) &&
            (c->base_coder == PMESH_BASE_NATIVE ||
             (c->base_encoder && c->base_decoder)) &&
            within(c->position_bits, 4, 24) && within(c->normal_bits, 4, 16) &&
@@ -161,7 +163,10 @@ static pmesh_status write_base(job *j)
     enc_stream_chunk(&j->stream, PMESH_CHUNK_BASE, j->room, (uint32_t)out.size);
     j->bytes_base = out.size;
     finish_level(j, 0);
-    return PMESH_OK;
+    const pmesh_mesh *m = &j->replay.codec.mesh;
+    return enc_count_pieces(&j->config.allocator, m->vertex,
+                            3 * m->face_count, m->vertex_count,
+                            &j->report->base_components);
 }
 
 /* What the decoder's view will list: see dec_view.c. */
@@ -170,12 +175,10 @@ static uint32_t count_moved_corners(const pmesh_codec *c)
     const pmesh_mesh *m = &c->mesh;
     uint32_t count = 0;
     for (uint32_t i = 0; i < c->block.vertex_count; i++) {
-        const uint32_t start = m->first[c->block.vertex + i];
-        uint32_t h = start;
-        do {
+        uint32_t start = m->first[c->block.vertex + i];
+        for (uint32_t h = start; h != PMESH_NONE;
+             h = pmesh_corner_next(m, &start, h))
             count += h < 3 * c->child_face[i];
-            h = pmesh_turn_left(m, h);
-        } while (h != PMESH_NONE && h != start);
     }
     return count;
 }
@@ -209,6 +212,8 @@ static pmesh_status write_block(job *j, uint32_t splits, double *bits)
 
     pmesh_codec_sizes *s = &j->header.sizes;
     s->block_splits = largest(s->block_splits, splits);
+    if (s->joined)
+        s->block_faces = largest(s->block_faces, r->codec.block.face_count);
     s->block_wedges = largest(
         s->block_wedges, j->mesh->value_count ? r->codec.block.wedge_count : 0);
     j->header.moved_corners += count_moved_corners(&r->codec);
@@ -271,6 +276,8 @@ static void fill_header(job *j)
     h->sizes.value_count = m->value_count;
     h->sizes.material_count = m->material_count;
     h->sizes.moves = j->replay.moves;
+    if (h->sizes.joined)
+        h->sizes.base_fans = j->replay.codec.sizes.base_fans;
     h->attribute_count = m->attribute_count;
     memcpy(h->attributes, m->attribute, sizeof h->attributes);
     h->level_count = j->schedule.batch_count + 1;
@@ -322,6 +329,7 @@ static pmesh_status code(job *j, const pmesh_mesh_input *in)
     if (!make_room(j))
         return PMESH_E_MEMORY;
     fill_errors(j);
+    j->header.sizes.joined = j->mesh->joined;
     write_names(j, in);
     status = write_base(j);
     if (status == PMESH_OK)

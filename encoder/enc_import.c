@@ -338,6 +338,7 @@ static void begin_report(const enc_importer *im)
     report->not_finite_faces = report->not_finite_values = 0;
     report->welded_vertices = report->unused_vertices = 0;
     report->zero_twins = report->cut_vertices = report->components = 0;
+    report->joined_vertices = 0;
     report->faces = report->vertices = report->wedges = 0;
     report->error_index = 0;
 }

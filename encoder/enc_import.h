@@ -114,6 +114,11 @@ pmesh_status enc_weld(const pmesh_allocator *allocator,
  * the vertices that are missing for a manifold. */
 pmesh_status enc_make_manifold(enc_importer *im);
 
+/* Pieces of so many corners' faces that share no vertex: *count of them. */
+pmesh_status enc_count_pieces(const pmesh_allocator *allocator,
+                              const uint32_t *vertex, uint32_t corners,
+                              uint32_t vertices, uint32_t *count);
+
 /* What enc_pair() finds out. */
 typedef struct enc_pairing {
     uint32_t *repeated;      /* in: empty set of faces; out: the repeated */

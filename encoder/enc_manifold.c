@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "encoder/enc_import.h"
 
+#include "encoder/enc_schedule.h"
 #include "format/alloc.h"
+#include "format/layout.h"
 
 /* Takes the faces in `dead` out again; their twins go with them. */
 static pmesh_status drop_faces(enc_importer *im, const uint32_t *dead,
@@ -77,28 +79,26 @@ static uint32_t find_piece(uint32_t *piece, uint32_t v)
     return v;
 }
 
-/* Pieces of the surface that share no vertex. Must precede the cutting. */
-static pmesh_status count_components(enc_importer *im)
+pmesh_status enc_count_pieces(const pmesh_allocator *a, const uint32_t *vertex,
+                              uint32_t corners, uint32_t vertices,
+                              uint32_t *count)
 {
-    const enc_mesh *mesh = im->mesh;
-    const pmesh_allocator *a = &mesh->allocator;
-    uint32_t *piece = pmesh_alloc(a, mesh->vertex_count, sizeof *piece);
+    uint32_t *piece = pmesh_alloc(a, vertices, sizeof *piece);
 
     if (!piece)
         return PMESH_E_MEMORY;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+    for (uint32_t v = 0; v < vertices; v++)
         piece[v] = v;
-    im->report->components = mesh->vertex_count;
-    for (uint32_t c = 0; c < 3 * mesh->face_count; c++) {
-        const uint32_t v = find_piece(piece, mesh->vertex[c]);
-        const uint32_t w =
-            find_piece(piece, mesh->vertex[enc_next_corner(c)]);
+    *count = vertices;
+    for (uint32_t c = 0; c < corners; c++) {
+        const uint32_t v = find_piece(piece, vertex[c]);
+        const uint32_t w = find_piece(piece, vertex[enc_next_corner(c)]);
         if (v == w)
             continue;
         piece[v > w ? v : w] = v > w ? w : v;
-        im->report->components--;
+        --*count;
     }
-    pmesh_release(a, piece, mesh->vertex_count, sizeof *piece);
+    pmesh_release(a, piece, vertices, sizeof *piece);
     return PMESH_OK;
 }
 
@@ -141,18 +141,88 @@ static pmesh_status copy_positions(enc_importer *im, uint32_t old_count)
                                                         : PMESH_E_MEMORY;
 }
 
+/* Without joining, each piece keeps a face and three vertices. */
+static bool wants_join(const enc_importer *im, uint32_t old_count)
+{
+    const pmesh_encoder_config *c = im->config;
+    const uint32_t pieces = im->report->components;
+    const uint32_t target = enc_base_target(c, im->mesh->face_count);
+    if (c->topology != PMESH_TOPOLOGY_AUTO)
+        return c->topology == PMESH_TOPOLOGY_JOIN;
+    if (c->threshold > 0 || c->base_coder == PMESH_BASE_DRACO)
+        return c->threshold > 0;
+    return im->mesh->vertex_count > old_count ||
+           (target > 0 && pieces > target) ||
+           (c->base_vertices > 0 && pieces > c->base_vertices / 3);
+}
+
+/* Fans get their vertex of before back; those beyond the limit get another one
+ * at the same place. */
+static pmesh_status join_fans(enc_importer *im, const uint32_t *before,
+                              uint32_t old_count)
+{
+    enc_mesh *mesh = im->mesh;
+    const pmesh_allocator *a = &mesh->allocator;
+    const uint32_t corners = 3 * mesh->face_count, fans = mesh->vertex_count;
+    uint32_t *vertex = pmesh_alloc(a, fans, sizeof *vertex); /* of each fan */
+    uint32_t *count = pmesh_alloc_zero(a, old_count, sizeof *count);
+    uint32_t *latest = pmesh_alloc(a, old_count, sizeof *latest);
+    const bool ready = vertex && count && latest;
+    uint32_t next = old_count;
+
+    if (ready)
+        memset(vertex, 0xff, fans * sizeof *vertex);
+    for (uint32_t c = 0; ready && c < corners; c++) {
+        const uint32_t v = before[c], fan = mesh->vertex[c];
+        if (vertex[fan] == ENC_NONE) {
+            if (count[v]++ % PMESH_MAX_FANS == 0)
+                latest[v] = count[v] == 1 ? v : next++;
+            im->report->joined_vertices += count[v] == 2;
+            vertex[fan] = latest[v];
+        }
+        mesh->vertex[c] = vertex[fan];
+    }
+    mesh->vertex_count = next;
+    mesh->joined = true;
+    pmesh_release(a, latest, old_count, sizeof *latest);
+    pmesh_release(a, count, old_count, sizeof *count);
+    pmesh_release(a, vertex, fans, sizeof *vertex);
+    return ready ? PMESH_OK : PMESH_E_MEMORY;
+}
+
+static pmesh_status cut_fans(enc_importer *im, bool regular)
+{
+    enc_mesh *mesh = im->mesh;
+    const pmesh_allocator *a = &mesh->allocator;
+    const size_t corners = 3 * (size_t)mesh->face_count;
+    const uint32_t old_count = mesh->vertex_count;
+    uint32_t *before = pmesh_alloc(a, corners, sizeof *before);
+
+    if (!before)
+        return PMESH_E_MEMORY;
+    memcpy(before, mesh->vertex, corners * sizeof *before);
+    pmesh_status status = enc_cut(mesh, regular);
+    if (!status && wants_join(im, old_count))
+        status = join_fans(im, before, old_count);
+    pmesh_release(a, before, corners, sizeof *before);
+    return status;
+}
+
 pmesh_status enc_make_manifold(enc_importer *im)
 {
     const uint32_t old_count = im->mesh->vertex_count;
     bool regular = true;
 
     pmesh_status status = pair_faces(im, &regular);
+    if (!status) /* before the cutting */
+        status = enc_count_pieces(&im->mesh->allocator, im->mesh->vertex,
+                                  3 * im->mesh->face_count, old_count,
+                                  &im->report->components);
     if (!status)
-        status = count_components(im);
-    if (!status)
-        status = enc_cut(im->mesh, regular);
+        status = cut_fans(im, regular);
     if (!status)
         status = copy_positions(im, old_count);
+    im->report->joined = im->mesh->joined;
     im->report->cut_vertices = im->mesh->vertex_count - old_count;
     return status;
 }

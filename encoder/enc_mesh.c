@@ -3,6 +3,7 @@
 
 #include "encoder/enc_import.h"
 #include "format/alloc.h"
+#include "format/layout.h"
 
 void enc_mesh_destroy(enc_mesh *mesh)
 {
@@ -82,20 +83,21 @@ static const char *check_twins(const enc_mesh *mesh)
 /*
  * Walks every fan once. A corner met in the walk of another one is in its fan,
  * so a second walk at one vertex is a second fan; a neighbour met twice in one
- * is an edge that occurs twice.
+ * is an edge that occurs twice. Joined, neighbours may be the same vertex.
  */
 static const char *check_fans(const enc_mesh *mesh, uint32_t *visited,
-                              uint32_t *walked, uint32_t *met)
+                              uint32_t *fans, uint32_t *met)
 {
     const uint32_t *vertex = mesh->vertex, *twin = mesh->twin;
+    const uint32_t most = mesh->joined ? PMESH_MAX_FANS : 1;
 
     for (uint32_t c = 0; c < 3 * mesh->face_count; c++) {
         const uint32_t v = vertex[c];
         if (enc_bit_get(visited, c))
             continue;
-        if (enc_bit_get(walked, v))
-            return "a vertex has one fan";
-        enc_bit_put(walked, v);
+        if (fans[v]++ == most)
+            return mesh->joined ? "a vertex has not too many fans"
+                                : "a vertex has one fan";
         uint32_t begin = c;
         while (twin[begin] != ENC_NONE) {
             begin = enc_next_corner(twin[begin]);
@@ -106,17 +108,17 @@ static const char *check_fans(const enc_mesh *mesh, uint32_t *visited,
         do {
             enc_bit_put(visited, x);
             const uint32_t tip = vertex[enc_next_corner(x)];
-            if (met[tip] == v + 1)
+            if (!mesh->joined && met[tip] == v + 1)
                 return "two vertices have one edge";
             met[tip] = v + 1;
             const uint32_t end = vertex[enc_previous_corner(x)];
             x = twin[enc_previous_corner(x)];
-            if (x == ENC_NONE && met[end] == v + 1)
+            if (!mesh->joined && x == ENC_NONE && met[end] == v + 1)
                 return "two vertices have one edge";
         } while (x != ENC_NONE && x != begin);
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        if (!enc_bit_get(walked, v))
+        if (fans[v] == 0)
             return "every vertex is in use";
     return NULL;
 }
@@ -156,13 +158,14 @@ const char *enc_mesh_check(const enc_mesh *mesh)
     uint32_t *visited = pmesh_alloc_zero(a, words, sizeof *visited);
     uint32_t *marked = pmesh_alloc_zero(a, words, sizeof *marked);
     uint32_t *met = pmesh_alloc_zero(a, mesh->vertex_count, sizeof *met);
-    if (visited && marked && met) {
-        broken = check_fans(mesh, visited, marked, met);
-        memset(marked, 0, words * sizeof *marked);
+    uint32_t *fans = pmesh_alloc_zero(a, mesh->vertex_count, sizeof *fans);
+    if (visited && marked && met && fans) {
+        broken = check_fans(mesh, visited, fans, met);
         broken = broken ? broken : check_wedges(mesh, marked);
     } else {
         broken = "out of memory";
     }
+    pmesh_release(a, fans, mesh->vertex_count, sizeof *fans);
     pmesh_release(a, met, mesh->vertex_count, sizeof *met);
     pmesh_release(a, marked, words, sizeof *marked);
     pmesh_release(a, visited, words, sizeof *visited);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * enc_mesh.h - the encoder's integer mesh: welded, quantised, cut into a
- * manifold. Everything after the import works on this and on nothing else.
+ * enc_mesh.h - the encoder's integer mesh: welded, quantised, cut into sheets
+ * that are manifold. Everything after the import works on this and on nothing
+ * else.
  *
  * Half-edges are numbered 3 * face + k and run from corner k to corner k + 1
  * (mod 3) of the face; "corner" and "half-edge" share the number. The twin is
@@ -17,9 +18,14 @@
  *     three faces;
  *   - every vertex and every wedge is used by a face.
  * Several vertices may share one grid point; that is never a reason to join.
+ *
+ * In a joined mesh, instead of the second and third, a vertex may have several
+ * fans, at most PMESH_MAX_FANS: the sheets meet there.
  */
 #ifndef ENC_MESH_H
 #define ENC_MESH_H
+
+#include <stdbool.h>
 
 #include "encoder/pmesh_encode.h"
 
@@ -37,6 +43,7 @@ typedef struct enc_mesh {
     uint32_t face_count;
     uint32_t *vertex;   /* per corner */
     uint32_t *twin;     /* per half-edge */
+    bool joined;        /* vertices may have several fans */
     uint32_t *material; /* per face; NULL if material_count is 1 */
     uint32_t material_count;
 

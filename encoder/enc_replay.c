@@ -12,12 +12,6 @@ static uint32_t next_corner(uint32_t c)
 
 /* ---- the oracle -------------------------------------------------------- */
 
-/* Vertex of the import that an import's corner has in the fine mesh. */
-static uint32_t label_at(const enc_replay *r, uint32_t corner)
-{
-    return r->label[r->mesh->vertex[corner]];
-}
-
 static const enc_contraction *contraction_of(const enc_replay *r, uint32_t v)
 {
     const uint32_t t = r->split_of[r->vertex_of[v]];
@@ -36,7 +30,7 @@ static bool answer_splits(void *user, uint32_t v)
 static uint32_t corner_with(const enc_replay *r, uint32_t face, uint32_t vertex)
 {
     uint32_t c = 3 * face;
-    while (label_at(r, c) != vertex)
+    while (enc_replay_label_at(r, c) != vertex)
         c++;
     return c;
 }
@@ -51,7 +45,7 @@ static void removed_corners(const enc_replay *r, const enc_contraction *t,
     at_wing[0] = at_wing[1] = ENC_NONE;
     for (int i = 0; i < 2 && faces[i] != ENC_NONE; i++) {
         const uint32_t c = corner_with(r, faces[i], t->parent);
-        at_wing[label_at(r, next_corner(c)) == t->child] = c;
+        at_wing[enc_replay_label_at(r, next_corner(c)) == t->child] = c;
     }
 }
 
@@ -67,7 +61,8 @@ static void answer_cut(void *user, uint32_t v, const pmesh_ring *ring,
     /* The faces of the child are one run; it starts behind one of v's. */
     bool childs[PMESH_MAX_RING];
     for (uint32_t i = 0; i < n; i++)
-        childs[i] = label_at(r, r->corner_of[ring->edge[i]]) == t->child;
+        childs[i] = enc_replay_label_at(r, r->corner_of[ring->edge[i]]) ==
+                    t->child;
     uint32_t first = ring->open ? 0 : n, end = ring->open ? 0 : n;
     for (uint32_t i = 0; i < n; i++) {
         const bool before = i > 0 ? childs[i - 1]
@@ -85,6 +80,27 @@ static void answer_cut(void *user, uint32_t v, const pmesh_ring *ring,
         *cut = (pmesh_cut){ end == 0 ? n : first, PMESH_NONE };
     else
         *cut = (pmesh_cut){ first, end };
+}
+
+static void answer_part(void *user, uint32_t v, const pmesh_fans *fans,
+                        pmesh_parting *out)
+{
+    enc_part_answer(user, contraction_of(user, v), v, fans, out);
+}
+
+static void answer_joined_split_done(void *user, uint32_t child, uint32_t face,
+                                     uint32_t count)
+{
+    enc_replay *r = user;
+    const enc_contraction *t = contraction_of(r, r->codec.mesh.parent[child]);
+    r->vertex_of[child] = t->child;
+    r->born[t->child] = child;
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t c = r->part_corner[i];
+        for (uint32_t k = 0; k < 3; k++, c = next_corner(c))
+            r->corner_of[3 * (face + i) + k] = c;
+    }
+    enc_part_number(r, face, count);
 }
 
 static void answer_split_done(void *user, uint32_t child, uint32_t face,
@@ -183,7 +199,8 @@ static bool allocate_maps(enc_replay *r)
     r->removed = pmesh_alloc(a, r->schedule->contraction_count, 8);
     r->position = pmesh_alloc(a, n, sizeof *r->position);
     if (!r->corner_of || !r->vertex_of || !r->born || !r->label ||
-        !r->split_of || !r->removed || !r->position)
+        !r->split_of || !r->removed || !r->position ||
+        (m->joined && !enc_part_allocate(r)))
         return false;
     if (!m->value_count)
         return true;
@@ -208,6 +225,9 @@ static bool allocate_codec(enc_replay *r)
         .value_count = m->value_count,
         .material_count = m->material_count,
         .moves = r->moves,
+        .joined = m->joined,
+        .base_fans = m->joined ? 3 * r->base_faces : 0,
+        .block_faces = m->joined ? m->face_count : 0,
         .block_splits =
             splits < PMESH_MAX_BLOCK_SPLITS ? splits : PMESH_MAX_BLOCK_SPLITS,
         .block_wedges = m->value_count ? wedge_room(m) : 0
@@ -244,7 +264,9 @@ static void fill_maps(enc_replay *r)
     for (uint32_t v = 0; v < m->vertex_count; v++)
         r->born[v] = r->split_of[v] = ENC_NONE;
     memset(r->removed, 0xff, s->contraction_count * sizeof *r->removed);
-    for (uint32_t f = 0; f < m->face_count; f++)
+    if (m->joined)
+        enc_part_fill(r);
+    for (uint32_t f = 0; f < m->face_count && !m->joined; f++)
         if (s->face_end[f] != ENC_NONE) {
             uint32_t *faces = r->removed[s->face_end[f]];
             faces[faces[0] != ENC_NONE] = f;
@@ -274,7 +296,10 @@ pmesh_status enc_replay_create(enc_replay *r, const enc_mesh *mesh,
     r->oracle = (pmesh_oracle){ .user = r,
                                 .splits = answer_splits,
                                 .cut = answer_cut,
-                                .split_done = answer_split_done,
+                                .part = answer_part,
+                                .split_done = mesh->joined
+                                                  ? answer_joined_split_done
+                                                  : answer_split_done,
                                 .position = answer_position,
                                 .key = answer_key,
                                 .number = answer_number,
@@ -297,6 +322,7 @@ void enc_replay_destroy(enc_replay *r)
     pmesh_release(a, r->label, n, 4);
     pmesh_release(a, r->split_of, n, 4);
     pmesh_release(a, r->removed, r->schedule->contraction_count, 8);
+    enc_part_release(r);
     pmesh_release(a, r->position, n, sizeof *r->position);
     pmesh_release(a, r->wedge_of, wedge_room(m), 4);
     pmesh_release(a, r->wedge_number, w, 4);
@@ -367,6 +393,8 @@ static bool renumber(enc_replay *r)
     for (uint32_t i = 0; i < b->face_count; i++)
         memcpy(r->corner_of + 3 * ((size_t)b->face + i),
                copy + 3 * (size_t)c->face_order[i], 3 * sizeof *copy);
+    if (r->face_of)
+        enc_part_number(r, b->face, b->face_count);
     if (r->wedge_of) {
         uint32_t *now = copy + b->wedge_count;
         memcpy(copy, r->wedge_of + b->wedge, b->wedge_count * sizeof *copy);
@@ -388,6 +416,8 @@ pmesh_status enc_replay_block(enc_replay *r, pmesh_coder *coder,
 {
     const pmesh_status status =
         pmesh_block_code(&r->codec, coder, &r->oracle, splits);
+    if (r->lost)
+        return PMESH_E_CORRUPT;
     if (status != PMESH_OK)
         return status;
     r->splits_left -= splits;

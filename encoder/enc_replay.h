@@ -14,6 +14,7 @@
 #include "encoder/enc_mesh.h"
 #include "encoder/enc_schedule.h"
 #include "format/codec.h"
+#include "format/join.h"
 
 typedef struct enc_replay {
     const enc_mesh *mesh;
@@ -37,6 +38,13 @@ typedef struct enc_replay {
     uint32_t *split_of;     /* vertex -> its contraction as parent, in the
                                current batch or a coarser one */
     uint32_t (*removed)[2]; /* contraction -> faces it removes, or ENC_NONE */
+    /* Of a joined mesh, instead: contraction -> its faces in the list; face ->
+     * codec's, ENC_NONE if not yet there. See enc_part.c. */
+    uint32_t *removed_first, *removed_list;
+    uint32_t *face_of;
+    uint32_t part_corner[2 * PMESH_MAX_RING + PMESH_MAX_LONE];
+    uint32_t part_count; /* corners that the new faces of the split start at */
+    bool lost;           /* a contraction that no split undoes: a bug */
     int32_t (*position)[3]; /* vertex -> place in the level's fine mesh */
     uint32_t *wedge_list, *wedge_first; /* vertex -> its wedges */
 
@@ -56,6 +64,31 @@ void enc_replay_destroy(enc_replay *r);
  * is coded natively: see base_coder. */
 pmesh_status enc_replay_base(enc_replay *r, const pmesh_encoder_config *config,
                              pmesh_writer *out);
+
+/* ---- of joined meshes: enc_part.c ---------------------------------------- */
+
+bool enc_part_allocate(enc_replay *r);
+void enc_part_release(enc_replay *r);
+void enc_part_fill(enc_replay *r);
+
+/* What lies across half-edge h of the import among the faces that the codec
+ * has: those that are not there yet have their sides glued together. */
+uint32_t enc_part_twin(const enc_replay *r, uint32_t h);
+
+/* The codec's oracle: how the fans of v part, by contraction t. */
+void enc_part_answer(enc_replay *r, const enc_contraction *t, uint32_t v,
+                     const pmesh_fans *fans, pmesh_parting *out);
+
+/* The codec's faces from `face` on are these: of the split, or of the base. */
+void enc_part_number(enc_replay *r, uint32_t face, uint32_t count);
+
+/* ---- all ----------------------------------------------------------------- */
+
+/* The import's vertex that a corner of it has in the level's fine mesh. */
+static inline uint32_t enc_replay_label_at(const enc_replay *r, uint32_t corner)
+{
+    return r->label[r->mesh->vertex[corner]];
+}
 
 /* Labels of the mesh in which contractions 0 .. done - 1 have happened. */
 void enc_replay_label(enc_replay *r, uint32_t done);

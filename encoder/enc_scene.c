@@ -175,8 +175,8 @@ static pmesh_status write_file(scene_file *f, pmesh_write write, void *user,
 static bool input_is_sound(const pmesh_scene_input *in)
 {
     if (!in->meshes || in->mesh_count < 1 ||
-        in->mesh_count > PMESH_MAX_PARTS ||
-        in->resource_count > PMESH_MAX_PARTS ||
+        in->mesh_count > PMESH_MAX_SCENE_PARTS ||
+        in->resource_count > PMESH_MAX_SCENE_PARTS ||
         in->early_count > in->resource_count ||
         in->document.size > PMESH_MAX_CHUNK_SIZE ||
         (in->document.size > 0 && !in->document.data) ||

@@ -75,11 +75,14 @@ static pmesh_status schedule_create(const enc_mesh *mesh, enc_schedule *out)
     s.contraction = pmesh_alloc(a, n, sizeof *s.contraction);
     s.vertex_end = pmesh_alloc(a, n, sizeof *s.vertex_end);
     s.face_end = pmesh_alloc(a, mesh->face_count, sizeof *s.face_end);
+    if (mesh->joined)
+        s.face_side = pmesh_alloc(a, mesh->face_count, sizeof *s.face_side);
     if (mesh->wedge)
         s.wedge_parent =
             pmesh_alloc(a, mesh->wedge_count, sizeof *s.wedge_parent);
     *out = s;
     if (!s.batch_first || !s.contraction || !s.vertex_end || !s.face_end ||
+        (mesh->joined && !s.face_side) ||
         (mesh->wedge && !s.wedge_parent)) {
         enc_schedule_destroy(out);
         return PMESH_E_MEMORY;
@@ -104,17 +107,37 @@ void enc_schedule_destroy(enc_schedule *s)
     pmesh_release(a, s->vertex_end, n, sizeof *s->vertex_end);
     pmesh_release(a, s->position, n, sizeof *s->position);
     pmesh_release(a, s->face_end, s->face_count, sizeof *s->face_end);
+    pmesh_release(a, s->face_side, s->face_count, sizeof *s->face_side);
     pmesh_release(a, s->wedge_parent, s->wedge_count, sizeof *s->wedge_parent);
     *s = (enc_schedule){ 0 };
 }
 
-/* Edges of a manifold: every half-edge without twin is one, twins share one. */
+/* Edges of sheets: every half-edge without twin is one, twins share one. */
 static uint32_t count_edges(const enc_mesh *mesh)
 {
     uint32_t count = 0;
     for (uint32_t h = 0; h < 3 * mesh->face_count; h++)
         count += h < mesh->twin[h];
     return count;
+}
+
+/* Pairs without an edge that an enc_run has room for. */
+static uint32_t near_room(const enc_mesh *mesh)
+{
+    return mesh->joined ? 4 * mesh->vertex_count : 0;
+}
+
+static pmesh_status find_near(const enc_mesh *mesh, enc_run *run)
+{
+    const double steps = run->config->threshold / mesh->grid.step;
+    pmesh_status status = PMESH_OK;
+    if (!mesh->joined)
+        return status;
+    status = enc_near_create(&mesh->allocator, near_room(mesh), &run->near);
+    if (status == PMESH_OK && steps >= 1)
+        status = enc_near_within(mesh, steps, &run->near);
+    run->within = run->near.count;
+    return status;
 }
 
 static pmesh_status run_create(const enc_mesh *mesh,
@@ -131,14 +154,22 @@ static pmesh_status run_create(const enc_mesh *mesh,
     if (status == PMESH_OK)
         status = enc_pricing_create(mesh, config, &run->pricing);
     if (status == PMESH_OK)
-        status = enc_queue_create(a, count_edges(mesh), &run->queue);
+        status = enc_queue_create(a, count_edges(mesh) + near_room(mesh),
+                                  &run->queue);
+    if (status == PMESH_OK)
+        status = find_near(mesh, run);
     if (status != PMESH_OK)
         return status;
-    run->edge_state = pmesh_alloc_zero(a, 3 * (size_t)mesh->face_count, 1);
+    run->edge_state = pmesh_alloc_zero(
+        a, 3 * (size_t)mesh->face_count + near_room(mesh), 1);
     run->taken = pmesh_alloc_zero(a, n, sizeof *run->taken);
     run->drift = pmesh_alloc_zero(a, n, sizeof *run->drift);
-    return run->edge_state && run->taken && run->drift ? PMESH_OK
-                                                       : PMESH_E_MEMORY;
+    if (mesh->joined)
+        run->role = pmesh_alloc_zero(a, n, sizeof *run->role);
+    return run->edge_state && run->taken && run->drift &&
+                   (run->role || !mesh->joined)
+               ? PMESH_OK
+               : PMESH_E_MEMORY;
 }
 
 /* Accepts what run_create() left half-built. */
@@ -150,16 +181,16 @@ static void run_destroy(const enc_mesh *mesh, enc_run *run)
     enc_pricing_destroy(mesh, &run->pricing);
     if (run->queue.list)
         enc_queue_destroy(&run->queue);
-    pmesh_release(a, run->edge_state, 3 * (size_t)mesh->face_count, 1);
+    enc_near_destroy(&run->near);
+    pmesh_release(a, run->edge_state,
+                  3 * (size_t)mesh->face_count + near_room(mesh), 1);
     pmesh_release(a, run->taken, mesh->vertex_count, sizeof *run->taken);
+    pmesh_release(a, run->role, mesh->vertex_count, sizeof *run->role);
     pmesh_release(a, run->drift, mesh->vertex_count, sizeof *run->drift);
 }
 
-/* Whatever the config names is a stop, and the first one reached counts. */
-static void set_targets(enc_run *run)
+uint32_t enc_base_target(const pmesh_encoder_config *config, uint32_t faces)
 {
-    const pmesh_encoder_config *config = run->config;
-    const uint32_t faces = run->mesh->face_count;
     uint32_t target = config->base_faces;
 
     if (target == 0 && config->base_vertices == 0 &&
@@ -176,7 +207,15 @@ static void set_targets(enc_run *run)
         if (target < least)
             target = least;
     }
-    run->face_target = target;
+    return target;
+}
+
+/* Whatever the config names is a stop, and the first one reached counts. */
+static void set_targets(enc_run *run)
+{
+    const pmesh_encoder_config *config = run->config;
+
+    run->face_target = enc_base_target(config, run->mesh->face_count);
     run->vertex_target = config->base_vertices;
 
     const double steps = config->base_error / run->mesh->grid.step;
@@ -195,6 +234,8 @@ static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
                           : profile == PMESH_BALANCED && fine ? FINE
                           : coarse                            ? BEST
                                                               : QUALITY;
+    if (run->joins_sheets)
+        plan.guard = 1; /* there is little else */
     plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)
         plan.limit = 1;
@@ -212,10 +253,16 @@ static void run_batches(enc_run *run, uint32_t variant)
         const uint32_t n = run->surface.vertex_count;
         const uint32_t taken = enc_batch_contract(run, &plan);
 
-        if (taken == 0)
+        const bool dry = taken <= n / POOR_SHARE;
+        if (taken == 0 && (!run->mesh->joined || run->joins_sheets))
             break;
-        out->batch_first[++out->batch_count] = out->contraction_count;
+        if (taken > 0)
+            out->batch_first[++out->batch_count] = out->contraction_count;
         poor = taken < n / POOR_SHARE ? poor + 1 : 0;
+        if (dry && run->mesh->joined && !run->joins_sheets) {
+            run->joins_sheets = true;
+            poor = 0;
+        }
     }
 }
 
@@ -253,8 +300,8 @@ pmesh_status enc_schedule_build(const enc_mesh *mesh,
         run_batches(&run, variant);
         out->position = run.surface.position;
         run.surface.position = NULL;
-        if (run.cancelled)
-            status = PMESH_E_CANCELLED;
+        if (run.cancelled || run.starved)
+            status = run.cancelled ? PMESH_E_CANCELLED : PMESH_E_MEMORY;
         else if (mesh->wedge)
             status = finish_wedges(&run);
     }

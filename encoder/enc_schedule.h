@@ -44,11 +44,17 @@ typedef struct enc_schedule {
     int32_t (*position)[3];
     /* Per face: the contraction that removes it, or ENC_NONE. */
     uint32_t *face_end;
+    /* Of a joined mesh, per face removed: the side 0 .. 2 that it died at, from
+     * its corner of that number on. */
+    uint8_t *face_side;
     /* Per wedge (NULL without attributes): the wedge of the parent vertex that
      * its surviving corners take when its vertex is contracted; ENC_NONE for
      * wedges of base vertices. A wedge dies with its vertex. */
     uint32_t *wedge_parent;
 } enc_schedule;
+
+/* The number of faces at which contraction is to end, of so many. */
+uint32_t enc_base_target(const pmesh_encoder_config *config, uint32_t faces);
 
 /* How many ways there are to try for the config: at least 1. */
 uint32_t enc_schedule_variants(const pmesh_encoder_config *config);

@@ -37,13 +37,11 @@ static bool on_border(const enc_surface *s, uint32_t h)
 
 static bool on_lines(const enc_surface *s, uint32_t v)
 {
-    uint32_t h = s->first[v];
+    uint32_t start = s->first[v];
     unsigned lines = 0;
 
-    do {
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
         lines += s->twin[h] != ENC_NONE && on_border(s, h);
-        h = enc_turn(s, h);
-    } while (h != ENC_NONE && h != s->first[v]);
     return lines > 0 && lines <= MAX_LINES;
 }
 
@@ -78,31 +76,37 @@ static void add_lines(const enc_surface *s, uint32_t v, enc_quadric *q)
 {
     if (!(s->wedge || s->mesh->material) || !on_lines(s, v))
         return;
-    uint32_t h = s->first[v];
-    do {
+    uint32_t start = s->first[v];
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h)) {
         const uint32_t t = s->twin[h];
         if (t != ENC_NONE && on_border(s, h)) {
             hold_edge(s, h, BORDER_WEIGHT, q);
             hold_edge(s, t, BORDER_WEIGHT, q);
         }
-        h = enc_turn(s, h);
-    } while (h != ENC_NONE && h != s->first[v]);
+    }
 }
 
-void enc_star_quadric(const enc_surface *s, uint32_t v, enc_quadric *q)
+static void add_fan(const enc_surface *s, uint32_t start, enc_quadric *q)
 {
-    uint32_t h = s->first[v], last;
+    uint32_t h = start, last;
 
-    memset(q, 0, sizeof *q);
     do {
         add_face(s, h, q);
         last = enc_prev(h);
         h = s->twin[last];
-    } while (h != ENC_NONE && h != s->first[v]);
+    } while (h != ENC_NONE && h != start);
     if (h == ENC_NONE) {
-        hold_edge(s, s->first[v], BOUNDARY_WEIGHT, q);
+        hold_edge(s, start, BOUNDARY_WEIGHT, q);
         hold_edge(s, last, BOUNDARY_WEIGHT, q);
     }
+}
+
+void enc_star_quadric(const enc_surface *s, uint32_t v, enc_quadric *q)
+{
+    memset(q, 0, sizeof *q);
+    for (uint32_t fan = s->first[v]; fan != ENC_NONE;
+         fan = enc_next_fan(s, fan))
+        add_fan(s, fan, q);
     add_lines(s, v, q);
 }
 
@@ -145,35 +149,48 @@ void enc_star_all_planes(const enc_surface *s, enc_planes *planes)
     }
 }
 
-double enc_star_unevenness(const enc_surface *s, uint32_t v, double *length)
+/* Sums of a fan's edges from v, and of their squares; returns their number. */
+static uint32_t sum_edges(const enc_surface *s, uint32_t start, uint32_t v,
+                          double sum[3], double *square)
 {
-    double sum[3] = { 0, 0, 0 }, d[3];
-    uint32_t h = s->first[v], last, count = 0;
+    uint32_t h = start, last, count = 0;
+    double d[3];
 
-    *length = 0;
     do {
         difference(s->position[s->vertex[enc_next(h)]], s->position[v], d);
         for (int i = 0; i < 3; i++)
             sum[i] += d[i];
-        *length += dot(d, d);
+        *square += dot(d, d);
         count++;
         last = enc_prev(h);
         h = s->twin[last];
-    } while (h != ENC_NONE && h != s->first[v]);
+    } while (h != ENC_NONE && h != start);
     if (h == ENC_NONE) {
         difference(s->position[s->vertex[last]], s->position[v], d);
         for (int i = 0; i < 3; i++)
             sum[i] += d[i];
         count++;
     }
+    return count;
+}
+
+double enc_star_unevenness(const enc_surface *s, uint32_t v, double *length)
+{
+    double sum[3] = { 0, 0, 0 };
+    uint32_t count = 0;
+
+    *length = 0;
+    for (uint32_t fan = s->first[v]; fan != ENC_NONE;
+         fan = enc_next_fan(s, fan))
+        count += sum_edges(s, fan, v, sum, length);
     return dot(sum, sum) / ((double)count * count);
 }
 
 void enc_star_volume(const enc_surface *s, uint32_t v, uint32_t other,
                      const double offset[3], enc_plane *keep)
 {
-    uint32_t h = s->first[v];
-    do {
+    uint32_t start = s->first[v];
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h)) {
         if (s->vertex[enc_next(h)] != other &&
             s->vertex[enc_prev(h)] != other) {
             double n[3];
@@ -182,6 +199,5 @@ void enc_star_volume(const enc_surface *s, uint32_t v, uint32_t other,
                 keep->n[i] += n[i];
             keep->offset += dot(n, offset);
         }
-        h = enc_turn(s, h);
-    } while (h != ENC_NONE && h != s->first[v]);
+    }
 }

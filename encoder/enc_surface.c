@@ -26,6 +26,51 @@ static void find_first(enc_surface *s)
     }
 }
 
+/* Lists the fan of corner c, unless it was: `seen` has a bit a corner. */
+static void add_fan(enc_surface *s, uint32_t c, uint32_t *seen, uint32_t *end)
+{
+    uint32_t start = c, count = 0;
+    if (seen[c / 32] >> c % 32 & 1)
+        return;
+    while (s->twin[start] != ENC_NONE) {
+        start = enc_next(s->twin[start]);
+        if (start == c)
+            break;
+    }
+    uint32_t h = start;
+    do {
+        seen[h / 32] |= UINT32_C(1) << h % 32;
+        count++;
+        h = enc_turn(s, h);
+    } while (h != ENC_NONE && h != start);
+    const uint32_t v = s->vertex[c];
+    s->degree[v] += count + (h == ENC_NONE ? 2 : 0);
+    s->fan[start] = ENC_NONE;
+    if (s->first[v] == ENC_NONE)
+        s->first[v] = start;
+    else
+        s->fan[end[v]] = start;
+    end[v] = start;
+}
+
+/* The fans of each vertex, in the order of their first corners. */
+static bool find_fans(enc_surface *s)
+{
+    const pmesh_allocator *a = &s->mesh->allocator;
+    const size_t n = s->vertex_count, words = 3 * (size_t)s->face_count / 32 + 1;
+    uint32_t *seen = pmesh_alloc_zero(a, words, sizeof *seen);
+    uint32_t *end = pmesh_alloc(a, n, sizeof *end);
+    const bool ready = seen && end;
+
+    memset(s->first, 0xff, n * sizeof *s->first);
+    memset(s->degree, 0, n * sizeof *s->degree);
+    for (uint32_t c = 0; ready && c < 3 * s->face_count; c++)
+        add_fan(s, c, seen, end);
+    pmesh_release(a, seen, words, sizeof *seen);
+    pmesh_release(a, end, n, sizeof *end);
+    return ready;
+}
+
 pmesh_status enc_surface_create(const enc_mesh *mesh, enc_surface *out)
 {
     const pmesh_allocator *a = &mesh->allocator;
@@ -38,13 +83,15 @@ pmesh_status enc_surface_create(const enc_mesh *mesh, enc_surface *out)
     s.twin = pmesh_alloc(a, corners, sizeof *s.twin);
     if (mesh->wedge)
         s.wedge = pmesh_alloc(a, corners, sizeof *s.wedge);
+    if (mesh->joined)
+        s.fan = pmesh_alloc(a, corners, sizeof *s.fan);
     s.first = pmesh_alloc(a, n, sizeof *s.first);
     s.degree = pmesh_alloc(a, n, sizeof *s.degree);
     s.position = pmesh_alloc(a, n, sizeof *s.position);
     s.mark = pmesh_alloc_zero(a, n, sizeof *s.mark);
     *out = s;
     if (!s.vertex || !s.twin || (mesh->wedge && !s.wedge) || !s.first ||
-        !s.degree || !s.position || !s.mark) {
+        !s.degree || !s.position || !s.mark || (mesh->joined && !s.fan)) {
         enc_surface_destroy(out);
         return PMESH_E_MEMORY;
     }
@@ -53,7 +100,12 @@ pmesh_status enc_surface_create(const enc_mesh *mesh, enc_surface *out)
     if (mesh->wedge)
         memcpy(s.wedge, mesh->wedge, corners * sizeof *s.wedge);
     memcpy(s.position, mesh->position, n * sizeof *s.position);
-    find_first(out);
+    if (!mesh->joined) {
+        find_first(out);
+    } else if (!find_fans(out)) {
+        enc_surface_destroy(out);
+        return PMESH_E_MEMORY;
+    }
     return PMESH_OK;
 }
 
@@ -68,6 +120,7 @@ void enc_surface_destroy(enc_surface *s)
     pmesh_release(a, s->vertex, corners, sizeof *s->vertex);
     pmesh_release(a, s->twin, corners, sizeof *s->twin);
     pmesh_release(a, s->wedge, corners, sizeof *s->wedge);
+    pmesh_release(a, s->fan, corners, sizeof *s->fan);
     pmesh_release(a, s->first, n, sizeof *s->first);
     pmesh_release(a, s->degree, n, sizeof *s->degree);
     pmesh_release(a, s->position, n, sizeof *s->position);
@@ -90,18 +143,34 @@ void enc_surface_mark_ring(enc_surface *s, uint32_t v)
         memset(s->mark, 0, s->mesh->vertex_count * sizeof *s->mark);
         s->stamp = 1;
     }
-    uint32_t h = s->first[v], last;
-    do {
+    uint32_t start = s->first[v];
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h)) {
         s->mark[s->vertex[enc_next(h)]] = s->stamp;
-        last = enc_prev(h);
-        h = s->twin[last];
-    } while (h != ENC_NONE && h != s->first[v]);
-    s->mark[s->vertex[last]] = s->stamp;
+        s->mark[s->vertex[enc_prev(h)]] = s->stamp;
+    }
 }
 
+uint32_t enc_surface_fan_faces(const enc_surface *s, uint32_t c, bool *open)
+{
+    uint32_t faces = 1, h = c;
+    while (faces < 4 && (h = enc_turn(s, h)) != ENC_NONE && h != c)
+        faces++;
+    *open = h == ENC_NONE;
+    for (h = c; *open && faces < 4 && s->twin[h] != ENC_NONE; faces++)
+        h = enc_next(s->twin[h]);
+    return faces;
+}
+
+/* Its fan has four members, the ghost included. */
 static bool wing_can_spare(const enc_surface *s, uint32_t h)
 {
-    return h == ENC_NONE || s->degree[s->vertex[enc_prev(h)]] >= 4;
+    if (h == ENC_NONE)
+        return true;
+    const uint32_t corner = enc_prev(h);
+    bool open;
+    if (!s->fan)
+        return s->degree[s->vertex[corner]] >= 4;
+    return enc_surface_fan_faces(s, corner, &open) >= (open ? 2 : 4);
 }
 
 bool enc_surface_can_join(const enc_surface *s, uint32_t h)
@@ -139,8 +208,8 @@ static double dot(const double a[3], const double b[3])
 static bool fan_flips(const enc_surface *s, uint32_t v, uint32_t other,
                       const int32_t place[3])
 {
-    uint32_t h = s->first[v];
-    do {
+    uint32_t start = s->first[v];
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h)) {
         if (s->vertex[enc_next(h)] != other &&
             s->vertex[enc_prev(h)] != other) {
             double before[3], after[3];
@@ -153,8 +222,7 @@ static bool fan_flips(const enc_surface *s, uint32_t v, uint32_t other,
                 (turn <= 0 || turn * turn < MIN_COSINE_SQUARED * old * now))
                 return true;
         }
-        h = enc_turn(s, h);
-    } while (h != ENC_NONE && h != s->first[v]);
+    }
     return false;
 }
 
@@ -168,21 +236,31 @@ bool enc_surface_flips(const enc_surface *s, const enc_pair *pair,
            (moves && fan_flips(s, pair->parent, pair->child, place));
 }
 
-/* Removes the face of h, gluing its two outer sides together. */
-static void remove_face(enc_surface *s, uint32_t h)
+/* The wing's fan that started at `old` starts at `now`, or is gone. */
+static void restart(enc_surface *s, uint32_t wing, uint32_t old, uint32_t now)
+{
+    uint32_t *at = &s->first[wing];
+    while (s->fan && *at != ENC_NONE && *at != old)
+        at = &s->fan[*at];
+    if (*at != old)
+        return;
+    if (s->fan && now != ENC_NONE)
+        s->fan[now] = s->fan[old];
+    *at = s->fan && now == ENC_NONE ? s->fan[old] : now;
+}
+
+void enc_surface_remove_face(enc_surface *s, uint32_t h)
 {
     const uint32_t next = enc_next(h), prev = enc_prev(h);
     const uint32_t in = s->twin[next], out = s->twin[prev];
     const uint32_t wing = s->vertex[prev];
 
-    /* Not both are NONE: the wing's ring had four members. */
     if (in != ENC_NONE)
         s->twin[in] = out;
     if (out != ENC_NONE)
         s->twin[out] = in;
-    if (s->first[wing] == prev)
-        s->first[wing] = in;
-    s->degree[wing]--;
+    restart(s, wing, prev, in);
+    s->degree[wing] -= in == ENC_NONE && out == ENC_NONE ? 3 : 1;
     s->vertex[h] = s->vertex[next] = s->vertex[prev] = ENC_NONE;
     s->face_count--;
 }
@@ -219,11 +297,13 @@ void enc_surface_contract(enc_surface *s, const enc_pair *pair,
     } while (h != ENC_NONE && h != s->first[u]);
 
     if (pair->left != ENC_NONE)
-        remove_face(s, pair->left);
+        enc_surface_remove_face(s, pair->left);
     if (pair->right != ENC_NONE)
-        remove_face(s, pair->right);
+        enc_surface_remove_face(s, pair->right);
     s->first[u] = ENC_NONE;
     s->first[v] = first;
+    if (s->fan)
+        s->fan[first] = ENC_NONE;
     s->degree[v] += s->degree[u] - 4;
     memcpy(s->position[v], place, sizeof s->position[0]);
     s->vertex_count--;

@@ -8,6 +8,9 @@
  *     child -> parent         either side; across a boundary stands the ghost,
  *         \    /              one vertex joined to every boundary vertex. The
  *          right              outer vertices of the two faces are the wings.
+ *
+ * In a joined mesh a vertex may have several fans. Most of what follows is for
+ * pairs of vertices with one fan and one edge; the others are for enc_join.h.
  */
 #ifndef ENC_SURFACE_H
 #define ENC_SURFACE_H
@@ -23,7 +26,9 @@ typedef struct enc_surface {
     uint32_t *wedge;  /* per corner, NULL without attributes */
     uint32_t *first;  /* per vertex: a half-edge that leaves it, at a boundary
                          the one without twin; ENC_NONE if it is dead */
-    uint32_t *degree; /* per vertex: ring members, the ghost included */
+    uint32_t *fan;    /* per half-edge that starts a fan: where the next one of
+                         the vertex starts, or ENC_NONE; NULL unless joined */
+    uint32_t *degree; /* per vertex: members of its rings, ghosts included */
     int32_t (*position)[3];
     uint32_t vertex_count, face_count; /* alive */
     uint32_t *mark; /* per vertex: scratch of enc_surface_mark_ring() */
@@ -66,9 +71,30 @@ static inline uint32_t enc_turn(const enc_surface *s, uint32_t h)
     return s->twin[enc_prev(h)];
 }
 
+/* The next corner of a vertex, fan by fan; ENC_NONE behind the last one:
+ *
+ *     uint32_t start = s->first[v];
+ *     for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
+ */
+static inline uint32_t enc_around(const enc_surface *s, uint32_t *start,
+                                  uint32_t h)
+{
+    h = enc_turn(s, h);
+    if (h == ENC_NONE || h == *start)
+        *start = h = s->fan ? s->fan[*start] : ENC_NONE;
+    return h;
+}
+
+static inline uint32_t enc_next_fan(const enc_surface *s, uint32_t start)
+{
+    return s->fan ? s->fan[start] : ENC_NONE;
+}
+
+/* A vertex with several fans counts as one of the boundary. */
 static inline bool enc_on_boundary(const enc_surface *s, uint32_t v)
 {
-    return s->twin[s->first[v]] == ENC_NONE;
+    const uint32_t first = s->first[v];
+    return s->twin[first] == ENC_NONE || enc_next_fan(s, first) != ENC_NONE;
 }
 
 /* The pair of half-edge h; its child is the start of h, or the end. */
@@ -87,6 +113,15 @@ void enc_surface_mark_ring(enc_surface *s, uint32_t v);
  * fewer than four: the wings' rings would be too small.
  */
 bool enc_surface_can_join(const enc_surface *s, uint32_t h);
+
+/* Faces of the fan of a corner, 4 standing for more; *open unless it is closed
+ * or has 4. */
+uint32_t enc_surface_fan_faces(const enc_surface *s, uint32_t corner,
+                               bool *open);
+
+/* Removes the face of h, gluing its two other sides together; the wing loses
+ * its fan there if that was the only face of it. */
+void enc_surface_remove_face(enc_surface *s, uint32_t h);
 
 /* True if a face around the pair would turn over or lose its area, were both
  * ends moved to `place`. Faces that have no area already are free. */

@@ -73,11 +73,10 @@ static uint64_t unlikeness(const enc_mesh *mesh, uint32_t a, uint32_t b)
 /* Of the wedges at v's corners the one most like w, of equals the lowest. */
 static uint32_t most_similar(const enc_surface *s, uint32_t w, uint32_t v)
 {
-    const uint32_t start = s->first[v];
-    uint32_t h = start, best = s->wedge[h];
+    uint32_t start = s->first[v], best = s->wedge[start];
     uint64_t least = unlikeness(s->mesh, w, best);
 
-    do {
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h)) {
         const uint32_t x = s->wedge[h];
         if (x != best) {
             const uint64_t value = unlikeness(s->mesh, w, x);
@@ -86,8 +85,7 @@ static uint32_t most_similar(const enc_surface *s, uint32_t w, uint32_t v)
                 best = x;
             }
         }
-        h = enc_turn(s, h);
-    } while (h != ENC_NONE && h != start);
+    }
     return best;
 }
 
@@ -109,6 +107,25 @@ void enc_wedges_map(const enc_surface *s, const enc_pair *pair,
         }
         h = enc_turn(s, h);
     } while (h != ENC_NONE && h != start);
+}
+
+/* What it has in a face that dies, of several the one in the first; or else
+ * the most similar one. */
+void enc_wedges_map_link(const enc_surface *s, const enc_pair *pair,
+                         const enc_link *link, uint32_t *wedge_parent)
+{
+    for (uint32_t i = 0; i < link->count; i++) {
+        const uint32_t h = link->edge[i], next = enc_next(h);
+        const bool forth = s->vertex[h] == pair->child;
+        const uint32_t w = s->wedge[forth ? h : next];
+        if (wedge_parent[w] == ENC_NONE)
+            wedge_parent[w] = s->wedge[forth ? next : h];
+    }
+    uint32_t start = s->first[pair->child];
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
+        if (wedge_parent[s->wedge[h]] == ENC_NONE)
+            wedge_parent[s->wedge[h]] =
+                most_similar(s, s->wedge[h], pair->parent);
 }
 
 /* Chains the wedges of each vertex, the lowest first. */

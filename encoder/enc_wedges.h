@@ -10,7 +10,7 @@
 #ifndef ENC_WEDGES_H
 #define ENC_WEDGES_H
 
-#include "encoder/enc_surface.h"
+#include "encoder/enc_join.h"
 
 /* Always true without attributes. */
 bool enc_wedges_clean(const enc_surface *s, const enc_pair *pair);
@@ -18,6 +18,10 @@ bool enc_wedges_clean(const enc_surface *s, const enc_pair *pair);
 /* Fills in wedge_parent[] for all wedges at the child's corners. */
 void enc_wedges_map(const enc_surface *s, const enc_pair *pair,
                     uint32_t *wedge_parent);
+
+/* The same for a pair with this link. */
+void enc_wedges_map_link(const enc_surface *s, const enc_pair *pair,
+                         const enc_link *link, uint32_t *wedge_parent);
 
 /* Fills in what is missing: wedges whose last face died before their vertex.
  * vertex_parent: per vertex, ENC_NONE in the base mesh. */

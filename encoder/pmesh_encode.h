@@ -64,10 +64,20 @@ typedef struct pmesh_mesh_input {
     size_t attribute_count; /* at most PMESH_MAX_ATTRIBUTES */
 } pmesh_mesh_input;
 
-typedef enum pmesh_metric {
-    PMESH_MEMORYLESS = 0, /* quadrics of the current surface: most accurate */
-    PMESH_ACCUMULATED = 1 /* quadrics summed from the original (1997) */
-} pmesh_metric;
+/*
+ * What coarse levels do where the surface is not manifold or in pieces. Files
+ * that join cost a little more where they do, and nothing where they do not;
+ * their base mesh is always coded natively. At full detail all show the input.
+ */
+typedef enum pmesh_topology {
+    PMESH_TOPOLOGY_AUTO = 0, /* join if there is a threshold; or if no Draco base
+                                is asked for, and the surface is not manifold or
+                                has more pieces than the base shall have faces */
+    PMESH_TOPOLOGY_KEEP = 1, /* sheets that meet are cut apart and may open
+                                cracks; no piece joins another or vanishes */
+    PMESH_TOPOLOGY_JOIN = 2  /* sheets stay together where they meet; pieces
+                                join and vanish when edges do not suffice */
+} pmesh_topology;
 
 /*
  * Hook: writes a base mesh into at most `capacity` bytes at `out` as a Draco
@@ -96,8 +106,9 @@ typedef struct pmesh_encoder_config {
     uint8_t generic_bits;      /* 4 .. 16, default 12 */
     double weld;               /* join positions this close, model units; 0:
                                   only equal ones */
-    double threshold;          /* reserved for pairs without an edge, which
-                                  format 0 cannot code: has no effect */
+    double threshold;          /* vertices this close may be contracted though
+                                  they have no edge, model units; 0: none */
+    pmesh_topology topology;   /* default PMESH_TOPOLOGY_AUTO */
     int lossless;              /* non-zero: a last layer with the input's
                                   positions, bit for bit, see below */
     uint32_t base_faces;       /* stop at this many faces; 0: about 200 */
@@ -141,6 +152,9 @@ typedef struct pmesh_encode_report {
     uint32_t zero_twins;          /* lossless: positions that equal another but
                                      for the sign of a zero; not joined */
     uint32_t cut_vertices;        /* added where the surface is not manifold */
+    uint32_t joined_vertices;     /* where it is not, and sheets stay together */
+    int joined;                   /* non-zero: sheets and pieces may join */
+    uint32_t base_components;     /* pieces of the base mesh */
     uint32_t components;          /* connected pieces of the surface */
     uint32_t faces, vertices, wedges; /* full detail of the file */
     pmesh_base_coder base_coder;  /* the one that was used */
@@ -168,8 +182,9 @@ typedef int (*pmesh_write)(void *user, const void *data, size_t size);
  *
  * Returns PMESH_OK, E_ARGUMENT (config out of range), E_MEMORY, E_LIMIT (more
  * than 2^30 corners), E_CANCELLED, E_WRITE, E_NO_FACES, E_INDEX, E_NOT_FINITE
- * (every face has a position that is not finite). On failure nothing has been
- * written, except with E_WRITE.
+ * (every face has a position that is not finite), or E_CORRUPT (a bug of ours:
+ * the file would not hold the mesh). On failure nothing has been written, except
+ * with E_WRITE.
  */
 PMESH_API pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
                                     const pmesh_encoder_config *config,

@@ -15,7 +15,9 @@ typedef struct base {
     pmesh_codec *c;
     pmesh_coder *coder;
     const pmesh_oracle *oracle;
-    uint32_t vertices, faces; /* to come to */
+    uint32_t vertices, faces; /* to come to; in a joined mesh, its fans */
+    uint32_t points;          /* of a joined mesh: vertices so far; order[] has
+                                 that of each fan, parent[] its first fan */
     uint32_t *table;          /* directed pairs -> half-edge, open addressing */
     uint64_t mask;
 } base;
@@ -65,6 +67,38 @@ static uint32_t neighbour_gate(const pmesh_mesh *m, uint32_t g, bool right)
     return PMESH_NONE;
 }
 
+/* The vertex of fan v: one before, whose position it takes, or a new one. */
+static pmesh_status join_fan(base *b, uint32_t original, uint32_t v,
+                             bool *known)
+{
+    pmesh_codec *c = b->c;
+    pmesh_mesh *m = &c->mesh;
+    pmesh_join_models *models = &c->models.join;
+    uint32_t *at = NULL, point = PMESH_NONE;
+    if (b->oracle)
+        at = &b->oracle->point_vertex
+                  [b->oracle->base_point[b->oracle->base->vertex[original]]];
+    if (at)
+        point = *at;
+    *known = b->points > 0 &&
+             pmesh_code_bit(b->coder, &models->known, point != PMESH_NONE);
+    if (!*known) {
+        m->parent[b->points] = v;
+        c->order[v] = b->points++;
+        if (at)
+            *at = c->order[v];
+        return PMESH_OK;
+    }
+    const uint32_t back =
+        pmesh_code_number(b->coder, &models->back, b->points - 1 - point);
+    if (back >= b->points)
+        return corrupt(b, "SPEC 6.2: no such base vertex");
+    c->order[v] = b->points - 1 - back;
+    memcpy(m->position[v], m->position[m->parent[c->order[v]]],
+           sizeof *m->position);
+    return PMESH_OK;
+}
+
 /* Appends the vertex at a half-edge of the oracle's base. */
 static pmesh_status add_vertex(base *b, uint32_t original,
                                const int64_t guess[3])
@@ -81,6 +115,15 @@ static pmesh_status add_vertex(base *b, uint32_t original,
         for (int k = 0; k < 3; k++)
             truth[k] = b->oracle->base->position[at][k];
     }
+    m->first[v] = PMESH_NONE;
+    if (m->fan) {
+        bool known;
+        const pmesh_status status = join_fan(b, original, v, &known);
+        if (status != PMESH_OK || known)
+            return status;
+    } else {
+        m->parent[v] = PMESH_NONE;
+    }
     for (int k = 0; k < 3; k++) {
         const int64_t r = truth[k] - guess[k];
         const uint32_t size = pmesh_code_number(
@@ -92,8 +135,6 @@ static pmesh_status add_vertex(base *b, uint32_t original,
             return corrupt(b, "SPEC 6.2: a base vertex is out of bounds");
         m->position[v][k] = (int32_t)x;
     }
-    m->parent[v] = PMESH_NONE;
-    m->first[v] = PMESH_NONE;
     return PMESH_OK;
 }
 
@@ -272,15 +313,49 @@ static void count_neighbours(pmesh_codec *c)
     }
 }
 
+/* Fans become those of their vertices. A vertex is never numbered above its
+ * first fan, so all is done in place. */
+static pmesh_status join_fans(base *b)
+{
+    pmesh_mesh *m = &b->c->mesh;
+    const uint32_t *point = b->c->order;
+    for (uint32_t v = 0; v < m->vertex_count; v++) {
+        const uint32_t p = point[v], start = m->first[v];
+        if (m->parent[p] == v)
+            m->first[p] = PMESH_NONE;
+        if (!pmesh_fan_append(m, p, start))
+            return corrupt(b, "SPEC 6.2: a vertex with too many fans");
+    }
+    for (uint32_t p = 0; p < b->points; p++) {
+        memmove(m->position[p], m->position[m->parent[p]],
+                sizeof *m->position);
+        m->parent[p] = PMESH_NONE;
+    }
+    for (uint32_t h = 0; h < 3 * m->face_count; h++)
+        m->vertex[h] = point[m->vertex[h]];
+    for (uint32_t h = 0; h < 3 * m->face_count; h++)
+        if (m->vertex[h] == m->vertex[pmesh_next(h)])
+            return corrupt(b, "SPEC 6.2: a base face names a vertex twice");
+    m->vertex_count = b->points;
+    return PMESH_OK;
+}
+
 /* At a boundary first[] is the half-edge without a twin. */
 static pmesh_status settle(base *b)
 {
     pmesh_mesh *m = &b->c->mesh;
+    pmesh_status status = PMESH_OK;
     for (uint32_t h = 0; h < 3 * m->face_count; h++)
         if (m->twin[h] == PMESH_NONE)
             m->first[m->vertex[h]] = h;
+    for (uint32_t v = 0; m->fan && v < m->vertex_count; v++)
+        m->fan[m->first[v]] = PMESH_NONE;
     if (pmesh_mesh_check(m, (uint8_t *)b->table))
         return corrupt(b, "SPEC 6.2: the base mesh is not a manifold");
+    if (m->fan)
+        status = join_fans(b);
+    if (status != PMESH_OK)
+        return status;
     count_neighbours(b->c);
     return PMESH_OK;
 }
@@ -300,10 +375,12 @@ pmesh_status pmesh_base_code(pmesh_codec *c, pmesh_coder *coder,
                              const pmesh_oracle *oracle, uint32_t vertices,
                              uint32_t faces)
 {
-    base b = begin(c, vertices, faces);
+    base b = begin(c, c->sizes.joined ? c->sizes.base_fans : vertices, faces);
     b.coder = coder;
     b.oracle = oracle;
     const pmesh_status status = code_connectivity(&b);
+    if (status == PMESH_OK && c->sizes.joined && b.points != vertices)
+        return corrupt(&b, "SPEC 6.2: fewer base vertices than declared");
     return status == PMESH_OK ? settle(&b) : status;
 }
 

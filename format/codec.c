@@ -18,9 +18,16 @@ static void *carve(carver *k, uint64_t count, uint64_t size)
     return at;
 }
 
+/* While the base of a joined mesh is coded, each fan is a vertex. */
+static uint64_t rows_of(const pmesh_codec_sizes *s)
+{
+    return s->joined && s->base_fans > s->vertices ? s->base_fans
+                                                   : s->vertices;
+}
+
 static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)
 {
-    const uint64_t edges = 3 * (uint64_t)s->faces;
+    const uint64_t edges = 3 * (uint64_t)s->faces, rows = rows_of(s);
     *m = (pmesh_mesh){ .vertex_capacity = s->vertices,
                        .face_capacity = s->faces,
                        .wedge_capacity = s->wedges,
@@ -28,9 +35,11 @@ static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)
                        .material_count = s->material_count };
     m->vertex = carve(k, edges, sizeof *m->vertex);
     m->twin = carve(k, edges, sizeof *m->twin);
-    m->first = carve(k, s->vertices, sizeof *m->first);
-    m->parent = carve(k, s->vertices, sizeof *m->parent);
-    m->position = carve(k, s->vertices, sizeof *m->position);
+    if (s->joined)
+        m->fan = carve(k, edges, sizeof *m->fan);
+    m->first = carve(k, rows, sizeof *m->first);
+    m->parent = carve(k, rows, sizeof *m->parent);
+    m->position = carve(k, rows, sizeof *m->position);
     if (s->value_count) {
         m->wedge = carve(k, edges, sizeof *m->wedge);
         m->wedge_vertex = carve(k, s->wedges, sizeof *m->wedge_vertex);
@@ -45,10 +54,10 @@ static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
                           void *block)
 {
-    carver k = { block, 0 };
+    carver k = { (uint8_t *)block, 0 };
     carve_mesh(&k, &c->mesh, s);
     c->sizes = *s;
-    c->order = carve(&k, s->vertices, sizeof *c->order);
+    c->order = carve(&k, rows_of(s), sizeof *c->order);
     c->state = carve(&k, s->vertices, sizeof *c->state);
     c->degree = carve(&k, s->vertices, sizeof *c->degree);
     c->around = carve(&k, s->vertices, sizeof *c->around);
@@ -66,8 +75,7 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     c->child_face = carve(&k, s->block_splits, sizeof *c->child_face);
     c->importance = carve(&k, s->block_splits, sizeof *c->importance);
     c->child_order = carve(&k, s->block_splits, sizeof *c->child_order);
-    c->face_order = carve(&k, 2 * (uint64_t)s->block_splits,
-                          sizeof *c->face_order);
+    c->face_order = carve(&k, pmesh_block_faces(s), sizeof *c->face_order);
     c->scratch = carve(&k, pmesh_rank_scratch(s), sizeof *c->scratch);
     c->cut_room = carve(&k, 1, pmesh_cut_room());
     c->base_scratch = carve(&k, pmesh_base_scratch(s->base_faces),

@@ -30,6 +30,9 @@ typedef enum pmesh_visit {
     PMESH_GHOST = 4     /* what lies across a boundary */
 } pmesh_visit;
 
+typedef struct pmesh_fans pmesh_fans;       /* see join.h */
+typedef struct pmesh_parting pmesh_parting;
+
 /*
  * The encoder's answers. Half-edges, vertices and faces are the codec's
  * numbers. A key names a wedge in the encoder's own way: two corners have the
@@ -43,10 +46,18 @@ typedef struct pmesh_oracle {
     const pmesh_mesh *base;
     uint32_t *base_edge;
     uint32_t *base_vertex;
+    /* Of a joined mesh, where each vertex of `base` is one fan: the point that
+     * it belongs to, in any numbering; filled in: of each of those the codec's
+     * number (PMESH_NONE before). */
+    const uint32_t *base_point;
+    uint32_t *point_vertex;
 
     bool (*splits)(void *user, uint32_t vertex);
     void (*cut)(void *user, uint32_t vertex, const pmesh_ring *ring,
                 pmesh_cut *cut);
+    /* Instead of cut() in a joined mesh; *parting is zeroed. */
+    void (*part)(void *user, uint32_t vertex, const pmesh_fans *fans,
+                 pmesh_parting *parting);
     /* Told behind each split: the child, its first new face and their count. */
     void (*split_done)(void *user, uint32_t child, uint32_t face,
                        uint32_t count);
@@ -72,9 +83,18 @@ typedef struct pmesh_codec_sizes {
     uint32_t value_count; /* coded components of a wedge; 0: no attributes */
     uint32_t material_count;
     bool moves;            /* optimal placement: a split moves its parent */
+    bool joined;           /* vertices may have several fans; then also: */
+    uint32_t base_fans;    /* of all vertices of the base */
+    uint32_t block_faces;  /* made by the richest block */
     uint32_t block_splits; /* in the largest block */
     uint32_t block_wedges; /* made by the richest block */
 } pmesh_codec_sizes;
+
+/* The most faces of a block. */
+static inline uint64_t pmesh_block_faces(const pmesh_codec_sizes *s)
+{
+    return s->joined ? s->block_faces : 2 * (uint64_t)s->block_splits;
+}
 
 typedef struct pmesh_codec {
     pmesh_codec_sizes sizes;

@@ -44,7 +44,7 @@ void pmesh_bits_start(pmesh_bit *bits, size_t count, const uint8_t *table)
 void pmesh_coder_encode(pmesh_coder *c, pmesh_writer *out)
 {
     *c = (pmesh_coder){
-        .encoding = true, .range = UINT32_MAX, .pending = 1, .out = out
+        .encoding = true, .range = UINT32_MAX, .out = out, .pending = 1
     };
 }
 

@@ -50,7 +50,7 @@ static const uint32_t table[256] = {
 
 uint32_t pmesh_crc32c(uint32_t crc, const void *data, size_t size)
 {
-    const uint8_t *bytes = data;
+    const uint8_t *bytes = (const uint8_t *)data;
     crc = ~crc;
     for (size_t i = 0; i < size; i++)
         crc = table[(crc ^ bytes[i]) & 0xff] ^ (crc >> 8);

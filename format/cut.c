@@ -39,7 +39,7 @@ typedef struct row {
 /* All rows, one behind the other; those with one wing last. */
 typedef struct options {
     uint32_t count, one_wing, row_count;
-    row row[MAX_ROWS];
+    struct row row[MAX_ROWS];
     int16_t part[3][MAX_LANES]; /* sum of the members that u gets */
     int16_t rest[3][MAX_LANES]; /* of those that v keeps, and the wings */
     int16_t to_u[MAX_LANES], to_v[MAX_LANES]; /* 2^16 / size of both rings */
@@ -576,7 +576,7 @@ void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
     s.open = ring->open;
     s.drop = pmesh_bit_length(s.n);
     s.weights = &c->models.cut_weights;
-    s.list = c->cut_room;
+    s.list = (options *)c->cut_room;
     place_points(&s, c, v, ring);
     sum_up(&s);
     weigh_wings(&s, c, ring);

@@ -18,8 +18,8 @@ uint64_t pmesh_exact_bind(pmesh_exact *e, const pmesh_grid *grid,
     if (!block)
         return last + (uint64_t)vertices * sizeof *e->position;
     *e = (pmesh_exact){ .grid = *grid,
-                        .last = block,
-                        .position = (void *)((uint8_t *)block + last) };
+                        .position = (void *)((uint8_t *)block + last),
+                        .last = (void *)block };
     memcpy(e->form, form, sizeof e->form);
     memset(e->last, 0, (size_t)last);
     pmesh_bits_init(e->same[0][0], sizeof e->same / sizeof(pmesh_bit));

@@ -45,7 +45,8 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h)
               h->profile | (s->moves ? PMESH_MODES_MOVES : 0) |
                   (h->base_coder == PMESH_BASE_DRACO ? PMESH_MODES_DRACO_BASE
                                                      : 0) |
-                  (h->exact_size > 0 ? PMESH_MODES_LOSSLESS : 0),
+                  (h->exact_size > 0 ? PMESH_MODES_LOSSLESS : 0) |
+                  (s->joined ? PMESH_MODES_JOINED : 0),
               1);
     pmesh_put(out, h->grid.bits, 1);
     for (int k = 0; k < 3; k++)
@@ -59,6 +60,10 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h)
     pmesh_put_varint(out, s->block_wedges);
     pmesh_put_varint(out, h->moved_corners);
     pmesh_put_varint(out, h->names_size);
+    if (s->joined) {
+        pmesh_put_varint(out, s->base_fans);
+        pmesh_put_varint(out, s->block_faces);
+    }
     write_exact(out, h);
 
     pmesh_put(out, h->attribute_count, 1);
@@ -155,8 +160,10 @@ static const char *read_level(pmesh_cursor *in, pmesh_header_chunk *h,
                        wedges >= vertices && wedges <= 3 * faces
                    ? NULL
                    : "SPEC 5.3: the base mesh has impossible counts";
-    if (vertices < 1 || faces < vertices || faces > 2 * vertices ||
-        wedges < vertices || e->error > last->error)
+    const bool possible = h->sizes.joined || (faces >= vertices &&
+                                              faces <= 2 * vertices);
+    if (vertices < 1 || !possible || wedges < vertices ||
+        e->error > last->error)
         return "SPEC 5.3: a level's counts do not follow from the one before";
     return NULL;
 }
@@ -187,11 +194,13 @@ static const char *read_levels(pmesh_cursor *in, pmesh_header_chunk *h)
 static const char *read_frame(pmesh_cursor *in, pmesh_header_chunk *h)
 {
     const uint8_t modes = pmesh_get_u8(in);
-    if (modes > PMESH_MODES_ALL ||
+    const uint8_t apart = PMESH_MODES_DRACO_BASE | PMESH_MODES_JOINED;
+    if (modes > PMESH_MODES_ALL || (modes & apart) == apart ||
         (modes & PMESH_MODES_PROFILE) > PMESH_QUALITY)
         return "SPEC 5.3: an unknown mode";
     h->profile = (pmesh_profile)(modes & PMESH_MODES_PROFILE);
     h->sizes.moves = modes & PMESH_MODES_MOVES;
+    h->sizes.joined = modes & PMESH_MODES_JOINED;
     h->base_coder = modes & PMESH_MODES_DRACO_BASE ? PMESH_BASE_DRACO
                                                    : PMESH_BASE_NATIVE;
     h->exact_size = modes & PMESH_MODES_LOSSLESS ? 1 : 0; /* until it is read */
@@ -220,6 +229,10 @@ static const char *read_limits(pmesh_cursor *in, pmesh_header_chunk *h)
     h->sizes.block_wedges = pmesh_get_count(in, PMESH_MAX_WEDGES);
     h->moved_corners = pmesh_get_count(in, PMESH_MAX_MOVED);
     h->names_size = pmesh_get_count(in, PMESH_MAX_NAMES_SIZE);
+    if (h->sizes.joined) {
+        h->sizes.base_fans = pmesh_get_count(in, 3 * PMESH_MAX_FACES);
+        h->sizes.block_faces = pmesh_get_count(in, PMESH_MAX_FACES);
+    }
     return in->overrun || h->sizes.material_count == 0
                ? "SPEC 5.3: a limit is out of range"
                : NULL;
@@ -250,9 +263,16 @@ static const char *check_limits(const pmesh_header_chunk *h)
 {
     const uint64_t splits = h->sizes.vertices - h->base_vertices;
     const uint64_t wedges = h->sizes.wedges - h->base_wedges;
+    const uint64_t faces = h->sizes.faces - h->sizes.base_faces;
+    const uint64_t moved = splits * PMESH_MAX_RING +
+                           (h->sizes.joined ? faces : 0);
     if (h->sizes.block_splits > splits || h->sizes.block_wedges > wedges ||
-        h->moved_corners > splits * PMESH_MAX_RING)
+        h->sizes.block_faces > faces || h->moved_corners > moved)
         return "SPEC 5.3: a limit is larger than anything that needs it";
+    if (h->sizes.joined &&
+        (h->sizes.base_fans < h->base_vertices ||
+         h->sizes.base_fans > 3 * (uint64_t)h->sizes.base_faces))
+        return "SPEC 5.3: the base mesh has impossible counts";
     return NULL;
 }
 

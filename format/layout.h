@@ -34,7 +34,8 @@
 #define PMESH_MODES_MOVES 4u       /* parents move */
 #define PMESH_MODES_DRACO_BASE 8u  /* the base mesh is a Draco buffer */
 #define PMESH_MODES_LOSSLESS 16u   /* exact positions at the end */
-#define PMESH_MODES_ALL 31u
+#define PMESH_MODES_JOINED 32u     /* vertices may have several fans */
+#define PMESH_MODES_ALL 63u
 
 #define PMESH_MAX_HEADER_SIZE 4096
 #define PMESH_MAX_CHUNK_SIZE (1u << 28)
@@ -53,12 +54,19 @@
  * has at most this many members. */
 #define PMESH_MAX_RING 48
 
+/* Of joined files. A vertex has at most so many fans; one that splits has few
+ * enough for all its rings together to keep the bound above (a closed ring of
+ * two faces is the smallest), and gets at most so many lone faces. */
+#define PMESH_MAX_FANS 48
+#define PMESH_MAX_PARTS (PMESH_MAX_RING / 2)
+#define PMESH_MAX_LONE 16
+
 /* 6.6 A wedge that is used again lies this close in its vertex' ring. */
 #define PMESH_MAX_PLACE 4096
 
-/* 8 Scenes. The header grows with the number of parts. */
+/* 11 Scenes. The header grows with the number of parts. */
 #define PMESH_SCENE_VERSION 0
 #define PMESH_MAX_SCENE_HEADER (1u << 22)
-#define PMESH_MAX_PARTS 65536 /* meshes; and as many resources */
+#define PMESH_MAX_SCENE_PARTS 65536 /* meshes; and as many resources */
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "format/codec.h"
 #include "format/cut.h"
+#include "format/join.h"
 #include "format/predict.h"
 #include "format/rank.h"
 #include "format/residual.h"
@@ -15,6 +16,28 @@ static pmesh_status corrupt(pmesh_codec *c, const char *rule)
 {
     c->rule = rule;
     return PMESH_E_CORRUPT;
+}
+
+static uint32_t queue_vertex(pmesh_codec *c, uint32_t x, uint32_t count)
+{
+    if (c->state[x] != PMESH_UNVISITED)
+        return count;
+    c->state[x] = PMESH_KEPT;
+    c->order[count] = x;
+    return count + 1;
+}
+
+/* The members of a ring, of any size. */
+static uint32_t queue_ring(pmesh_codec *c, uint32_t start, uint32_t count)
+{
+    const pmesh_mesh *m = &c->mesh;
+    uint32_t h = start, last;
+    do {
+        count = queue_vertex(c, m->vertex[pmesh_next(h)], count);
+        last = pmesh_prev(h);
+        h = m->twin[last];
+    } while (h != PMESH_NONE && h != start);
+    return h == PMESH_NONE ? queue_vertex(c, m->vertex[last], count) : count;
 }
 
 /* Breadth first over the rings, from vertex 0 and again from the lowest vertex
@@ -31,24 +54,10 @@ void pmesh_level_begin(pmesh_codec *c)
             continue;
         c->state[seed] = PMESH_KEPT;
         c->order[count++] = seed;
-        while (next < count) {
-            const uint32_t start = m->first[c->order[next++]];
-            uint32_t h = start, last;
-            do {
-                const uint32_t x = m->vertex[pmesh_next(h)];
-                if (c->state[x] == PMESH_UNVISITED) {
-                    c->state[x] = PMESH_KEPT;
-                    c->order[count++] = x;
-                }
-                last = pmesh_prev(h);
-                h = m->twin[last];
-            } while (h != PMESH_NONE && h != start);
-            const uint32_t x = m->vertex[last];
-            if (h == PMESH_NONE && c->state[x] == PMESH_UNVISITED) {
-                c->state[x] = PMESH_KEPT;
-                c->order[count++] = x;
-            }
-        }
+        while (next < count)
+            for (uint32_t fan = m->first[c->order[next++]]; fan != PMESH_NONE;
+                 fan = m->fan ? m->fan[fan] : PMESH_NONE)
+                count = queue_ring(c, fan, count);
     }
     memset(c->state, PMESH_UNVISITED, n);
     c->level_vertex_count = n;
@@ -61,12 +70,15 @@ static uint32_t at_most(uint32_t value, uint32_t limit)
 }
 
 /* Whether v splits is likely told by which of its neighbours did. */
-static uint32_t flag_context(const pmesh_codec *c, const pmesh_ring *ring)
+static uint32_t flag_context(const pmesh_codec *c, const pmesh_ring *ring,
+                             uint32_t rings)
 {
-    uint32_t seen[PMESH_GHOST + 1] = { 0 };
-    for (uint32_t i = 0; i < ring->count; i++)
-        seen[c->state[ring->vertex[i]]]++;
-    const uint32_t size = ring->count + ring->open;
+    uint32_t seen[PMESH_GHOST + 1] = { 0 }, size = 0;
+    for (uint32_t k = 0; k < rings; k++) {
+        for (uint32_t i = 0; i < ring[k].count; i++)
+            seen[c->state[ring[k].vertex[i]]]++;
+        size += ring[k].count + ring[k].open;
+    }
     const uint32_t valence = size < 4 ? 0 : at_most(size - 3, 7);
     const uint32_t split = at_most(seen[PMESH_PARENT] + seen[PMESH_NEWBORN], 5);
     const uint32_t kept = at_most(seen[PMESH_KEPT], 4);
@@ -173,7 +185,43 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
     c->block.face_count += faces;
     if (oracle)
         oracle->split_done(oracle->user, u, m->face_count - faces, faces);
-    return pmesh_wedge_split_code(c, coder, oracle, u, cut);
+    const uint32_t h = 3 * (m->face_count - faces);
+    const bool a = cut.first != PMESH_NONE, b = cut.end != PMESH_NONE;
+    const pmesh_fresh fresh = {
+        .count = 1,
+        .face = { { a ? h : PMESH_NONE, !b ? PMESH_NONE : a ? h + 3 : h } },
+        .start = { m->first[u] }
+    };
+    return pmesh_wedge_split_code(c, coder, oracle, u, &fresh);
+}
+
+static bool code_flag(pmesh_codec *c, pmesh_coder *coder,
+                      const pmesh_oracle *oracle, uint32_t v,
+                      const pmesh_ring *ring, uint32_t rings)
+{
+    pmesh_bit *flag = &c->models.flag[flag_context(c, ring, rings)];
+    return pmesh_code_bit(coder, flag,
+                          oracle && oracle->splits(oracle->user, v));
+}
+
+static pmesh_status visit(pmesh_codec *c, pmesh_coder *coder,
+                          const pmesh_oracle *oracle, uint32_t v)
+{
+    pmesh_ring ring;
+    return pmesh_ring_gather(&c->mesh, v, &ring) &&
+                   code_flag(c, coder, oracle, v, &ring, 1)
+               ? split(c, coder, oracle, v, &ring)
+               : PMESH_OK;
+}
+
+static pmesh_status visit_joined(pmesh_codec *c, pmesh_coder *coder,
+                                 const pmesh_oracle *oracle, uint32_t v)
+{
+    pmesh_fans fans;
+    return pmesh_fans_gather(&c->mesh, v, &fans) &&
+                   code_flag(c, coder, oracle, v, fans.ring, fans.count)
+               ? pmesh_join_split(c, coder, oracle, v, &fans)
+               : PMESH_OK;
 }
 
 static pmesh_status code_connectivity(pmesh_codec *c, pmesh_coder *coder,
@@ -182,17 +230,12 @@ static pmesh_status code_connectivity(pmesh_codec *c, pmesh_coder *coder,
 {
     pmesh_status status = PMESH_OK;
     while (c->block.vertex_count < split_count && status == PMESH_OK) {
-        pmesh_ring ring;
         if (c->level_next == c->level_vertex_count)
             return corrupt(c, "SPEC 6.3: more splits than vertices");
         const uint32_t v = c->order[c->level_next++];
         c->state[v] = PMESH_KEPT;
-        if (!pmesh_ring_gather(&c->mesh, v, &ring))
-            continue;
-        pmesh_bit *flag = &c->models.flag[flag_context(c, &ring)];
-        if (pmesh_code_bit(coder, flag,
-                           oracle && oracle->splits(oracle->user, v)))
-            status = split(c, coder, oracle, v, &ring);
+        status = c->sizes.joined ? visit_joined(c, coder, oracle, v)
+                                 : visit(c, coder, oracle, v);
     }
     return status;
 }

@@ -5,7 +5,12 @@
 
 bool pmesh_ring_gather(const pmesh_mesh *m, uint32_t v, pmesh_ring *ring)
 {
-    const uint32_t start = m->first[v];
+    return pmesh_ring_gather_fan(m, m->first[v], ring);
+}
+
+bool pmesh_ring_gather_fan(const pmesh_mesh *m, uint32_t start,
+                           pmesh_ring *ring)
+{
     uint32_t h = start, n = 0;
 
     do {
@@ -50,7 +55,7 @@ static void pair(pmesh_mesh *m, uint32_t a, uint32_t b)
         m->twin[b] = a;
 }
 
-static uint32_t add_face(pmesh_mesh *m, uint32_t a, uint32_t b, uint32_t c)
+uint32_t pmesh_mesh_add_face(pmesh_mesh *m, uint32_t a, uint32_t b, uint32_t c)
 {
     const uint32_t h = 3 * m->face_count++;
     m->vertex[h] = a;
@@ -73,12 +78,34 @@ static uint32_t edge_behind(const pmesh_ring *ring, uint32_t i)
     return i < ring->face_count ? ring->edge[i] : PMESH_NONE;
 }
 
-void pmesh_mesh_split(pmesh_mesh *m, uint32_t v, const pmesh_ring *ring,
-                      pmesh_cut cut)
+bool pmesh_fan_append(pmesh_mesh *m, uint32_t v, uint32_t h)
 {
-    const uint32_t u = m->vertex_count++;
+    uint32_t *end = &m->first[v], count = 0;
+    for (; *end != PMESH_NONE; end = &m->fan[*end])
+        if (++count == PMESH_MAX_FANS)
+            return false;
+    *end = h;
+    m->fan[h] = PMESH_NONE;
+    return true;
+}
+
+/* The fan of x that started at `old` starts at `now`. */
+static void restart(pmesh_mesh *m, uint32_t x, uint32_t old, uint32_t now)
+{
+    uint32_t *at = &m->first[x];
+    if (m->fan) {
+        while (*at != old)
+            at = &m->fan[*at];
+        m->fan[now] = m->fan[old];
+    }
+    *at = now;
+}
+
+void pmesh_mesh_cut(pmesh_mesh *m, uint32_t v, uint32_t u,
+                    const pmesh_ring *ring, pmesh_cut cut, uint32_t *start_v,
+                    uint32_t *start_u)
+{
     const uint32_t n = ring->face_count;
-    m->parent[u] = v;
 
     /* Faces first .. end - 1 move to u; a ghost stands at either end. */
     uint32_t face = cut.first == PMESH_NONE ? 0 : cut.first;
@@ -93,23 +120,23 @@ void pmesh_mesh_split(pmesh_mesh *m, uint32_t v, const pmesh_ring *ring,
     if (cut.first != PMESH_NONE) {
         const uint32_t before = edge_before(ring, cut.first);
         const uint32_t behind = edge_behind(ring, cut.first);
-        at_a = add_face(m, v, ring->vertex[cut.first], u);
+        at_a = pmesh_mesh_add_face(m, v, ring->vertex[cut.first], u);
         pair(m, at_a, before);
         pair(m, at_a + 1, behind);
         m->twin[at_a + 2] = PMESH_NONE;
         if (behind == PMESH_NONE) /* a's boundary now starts at u */
-            m->first[ring->vertex[cut.first]] = at_a + 1;
+            restart(m, ring->vertex[cut.first], before, at_a + 1);
     }
     /* Wing b: face (v, u, b) between b -> u before and v -> b behind it. */
     if (cut.end != PMESH_NONE) {
         const uint32_t before = edge_before(ring, cut.end);
         const uint32_t behind = edge_behind(ring, cut.end);
-        at_b = add_face(m, v, u, ring->vertex[cut.end]);
+        at_b = pmesh_mesh_add_face(m, v, u, ring->vertex[cut.end]);
         pair(m, at_b + 1, before);
         pair(m, at_b + 2, behind);
         m->twin[at_b] = PMESH_NONE;
         if (behind == PMESH_NONE)
-            m->first[ring->vertex[cut.end]] = at_b + 2;
+            restart(m, ring->vertex[cut.end], before, at_b + 2);
     }
     if (at_a != PMESH_NONE && at_b != PMESH_NONE)
         pair(m, at_a + 2, at_b);
@@ -118,18 +145,40 @@ void pmesh_mesh_split(pmesh_mesh *m, uint32_t v, const pmesh_ring *ring,
      * or a new face came before it. Along the boundary u takes the part at the
      * ghost: with wing a the last faces, so u's first edge is u -> v; with wing
      * b the first faces, so u starts where v did, or at its only face. */
-    if (cut.end == PMESH_NONE) {
-        m->first[u] = at_a + 2;
-        if (cut.first == 0)
-            m->first[v] = at_a;
-    } else if (cut.first == PMESH_NONE) {
-        m->first[u] = cut.end == 0 ? at_b + 1 : ring->edge[0];
-        m->first[v] = at_b;
-    } else {
-        m->first[u] = at_a + 2;
-        if (!ring->open || cut.first == 0)
-            m->first[v] = at_a;
+    *start_v = ring->edge[0];
+    *start_u = at_a + 2;
+    if (cut.first == PMESH_NONE) {
+        *start_u = cut.end == 0 ? at_b + 1 : ring->edge[0];
+        *start_v = at_b;
+    } else if (!ring->open || cut.first == 0) {
+        *start_v = at_a;
     }
+}
+
+void pmesh_mesh_split(pmesh_mesh *m, uint32_t v, const pmesh_ring *ring,
+                      pmesh_cut cut)
+{
+    const uint32_t u = m->vertex_count++;
+    m->parent[u] = v;
+    pmesh_mesh_cut(m, v, u, ring, cut, &m->first[v], &m->first[u]);
+}
+
+static const char *check_fan(const pmesh_mesh *m, uint32_t v, uint32_t start,
+                             uint8_t *seen, uint32_t *reached)
+{
+    if (start >= 3 * m->face_count || m->vertex[start] != v)
+        return "first[] does not start at its vertex";
+    uint32_t h = start;
+    do {
+        if (seen[h])
+            return "a fan runs into itself";
+        seen[h] = 1;
+        ++*reached;
+        h = pmesh_turn_left(m, h);
+    } while (h != PMESH_NONE && h != start);
+    return h == PMESH_NONE && m->twin[start] != PMESH_NONE
+               ? "first[] is not at the boundary"
+               : NULL;
 }
 
 const char *pmesh_mesh_check(const pmesh_mesh *m, uint8_t *seen)
@@ -153,19 +202,15 @@ const char *pmesh_mesh_check(const pmesh_mesh *m, uint8_t *seen)
     }
     uint32_t reached = 0;
     for (uint32_t v = 0; v < m->vertex_count; v++) {
-        const uint32_t start = m->first[v];
-        if (start >= edge_count || m->vertex[start] != v)
-            return "first[] does not start at its vertex";
-        uint32_t h = start;
+        uint32_t start = m->first[v], fans = 0;
         do {
-            if (seen[h])
-                return "a fan runs into itself";
-            seen[h] = 1;
-            reached++;
-            h = pmesh_turn_left(m, h);
-        } while (h != PMESH_NONE && h != start);
-        if (h == PMESH_NONE && m->twin[start] != PMESH_NONE)
-            return "first[] is not at the boundary";
+            const char *broken = check_fan(m, v, start, seen, &reached);
+            if (broken)
+                return broken;
+            if (++fans > PMESH_MAX_FANS)
+                return "a vertex has too many fans";
+            start = m->fan ? m->fan[start] : PMESH_NONE;
+        } while (start != PMESH_NONE);
     }
     return reached == edge_count ? NULL : "a vertex has more than one fan";
 }

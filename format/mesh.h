@@ -7,12 +7,16 @@
  * face; it starts at vertex[h]. twin[h] runs the other way in the neighbouring
  * face, or is PMESH_NONE at a boundary. first[v] is a half-edge that starts at
  * v: at a boundary the one without a twin, so that turning counter-clockwise
- * from it meets every face of v.
+ * from it meets every face of v's fan.
  *
  *            x1                   turning counter-clockwise around v:
  *          / |                      h -> twin[prev(h)]
  *        x2--v--x0                clockwise:
  *                                   h -> next(twin[h])
+ *
+ * In a joined mesh a vertex may have several fans: sheets that meet in a point
+ * or, vertex by vertex, in an edge. Twins stay in the sheet. Then fan[h] leads
+ * from the half-edge where one fan starts to where the vertex' next one does.
  *
  * Storage belongs to the caller; nothing here allocates.
  */
@@ -32,6 +36,8 @@ typedef struct pmesh_mesh {
     uint32_t *vertex; /* per half-edge */
     uint32_t *twin;   /* per half-edge */
     uint32_t *first;  /* per vertex */
+    uint32_t *fan;    /* per half-edge that starts a fan: the start of the next
+                         one, or PMESH_NONE. NULL: each vertex has one fan */
     uint32_t *parent; /* per vertex: split from, PMESH_NONE in the base */
     int32_t (*position)[3];
 
@@ -64,6 +70,22 @@ static inline uint32_t pmesh_turn_left(const pmesh_mesh *m, uint32_t h)
 }
 
 /*
+ * The next corner of a vertex, fan by fan; PMESH_NONE behind the last one:
+ *
+ *     uint32_t start = m->first[v];
+ *     for (uint32_t h = start; h != PMESH_NONE;
+ *          h = pmesh_corner_next(m, &start, h))
+ */
+static inline uint32_t pmesh_corner_next(const pmesh_mesh *m, uint32_t *start,
+                                         uint32_t h)
+{
+    h = pmesh_turn_left(m, h);
+    if (h == PMESH_NONE || h == *start)
+        *start = h = m->fan ? m->fan[*start] : PMESH_NONE;
+    return h;
+}
+
+/*
  * The neighbours of v, counter-clockwise from first[v]. Face i lies between
  * neighbours i and i + 1. At a boundary the last neighbour has no face behind
  * it, and the ring is closed by the ghost, which is not listed but counts.
@@ -76,8 +98,13 @@ typedef struct pmesh_ring {
     uint32_t vertex[PMESH_MAX_RING]; /* per neighbour */
 } pmesh_ring;
 
-/* False, with the ring unusable, if neighbours and ghost exceed the bound. */
+/* The ring of v's first fan. False, with the ring unusable, if neighbours and
+ * ghost exceed the bound. */
 bool pmesh_ring_gather(const pmesh_mesh *m, uint32_t v, pmesh_ring *ring);
+
+/* The same of the fan that starts at half-edge `start`. */
+bool pmesh_ring_gather_fan(const pmesh_mesh *m, uint32_t start,
+                           pmesh_ring *ring);
 
 /*
  * Where a ring is cut: the new vertex takes the faces first .. end - 1 (taken
@@ -107,10 +134,27 @@ bool pmesh_cut_legal(const pmesh_ring *ring, pmesh_cut cut);
 void pmesh_mesh_split(pmesh_mesh *m, uint32_t v, const pmesh_ring *ring,
                       pmesh_cut cut);
 
+/*
+ * Cuts one fan of v alone: u, not yet counted, gets its part of the faces. The
+ * starts of both parts go to start_v and start_u; into the lists of v and u
+ * they are left to the caller to put.
+ */
+void pmesh_mesh_cut(pmesh_mesh *m, uint32_t v, uint32_t u,
+                    const pmesh_ring *ring, pmesh_cut cut, uint32_t *start_v,
+                    uint32_t *start_u);
+
+/* Appends a face and returns its first half-edge. Its twins are left to the
+ * caller. */
+uint32_t pmesh_mesh_add_face(pmesh_mesh *m, uint32_t a, uint32_t b, uint32_t c);
+
+/* Appends the fan that starts at half-edge h to the list of vertex v; false,
+ * with nothing done, if v has PMESH_MAX_FANS fans. Of joined meshes only. */
+bool pmesh_fan_append(pmesh_mesh *m, uint32_t v, uint32_t h);
+
 /* NULL if connectivity is sound, else the rule that is broken: twins mutual and
- * opposite, first[] as promised, every face of a vertex in its one fan, three
- * different vertices per face. For tests and for a decoded base mesh; `seen`
- * holds 3 * face_count bytes. */
+ * opposite, first[] and fan[] as promised, every face of a vertex in its one
+ * fan, or in one of its fans, three different vertices per face. For tests and
+ * for a decoded base mesh; `seen` holds 3 * face_count bytes. */
 const char *pmesh_mesh_check(const pmesh_mesh *m, uint8_t *seen);
 
 #endif

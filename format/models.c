@@ -45,6 +45,19 @@ static void wedge_init(pmesh_wedge_models *m)
     pmesh_number_init(&m->pick);
 }
 
+static void join_init(pmesh_join_models *m)
+{
+    INIT_BITS(m->whole);
+    INIT_BITS(m->moves);
+    INIT_BITS(m->lone);
+    pmesh_bits_init(&m->pair, 1);
+    pmesh_bits_init(&m->turned, 1);
+    pmesh_bits_init(&m->far, 1);
+    pmesh_bits_init(&m->known, 1);
+    pmesh_number_init(&m->member);
+    pmesh_number_init(&m->back);
+}
+
 static void weights_init(int32_t *to, const int16_t *from, size_t count,
                          int32_t unit)
 {
@@ -89,6 +102,7 @@ void pmesh_models_init(pmesh_models *m, const pmesh_tables *start)
     pmesh_number_init(&m->base_vertex);
     pmesh_number_init(&m->base_position);
     wedge_init(&m->wedge);
+    join_init(&m->join);
     for (int i = 0; i < PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS; i++)
         for (int k = 0; k < 2; k++)
             pmesh_number_init(&m->value[i][k]);

@@ -45,6 +45,17 @@ typedef struct pmesh_wedge_models {
     pmesh_number pick;
 } pmesh_wedge_models;
 
+/* Of joined meshes: see join.c and base.c. */
+typedef struct pmesh_join_models {
+    pmesh_bit whole[3];    /* a fan is not cut */
+    pmesh_bit moves[2][3]; /* but goes to the child */
+    pmesh_bit lone[3];     /* a lone face follows */
+    pmesh_bit pair, turned, far;
+    pmesh_number member;
+    pmesh_bit known; /* a fan of the base belongs to a vertex before */
+    pmesh_number back;
+} pmesh_join_models;
+
 /* What a cut's cost is made of (SPEC 6.4); learns from every cut. Shape in
  * 1/4096 bit, the rest in 1/65536. */
 typedef struct pmesh_cut_weights {
@@ -71,6 +82,7 @@ typedef struct pmesh_models {
     pmesh_number base_position;
     pmesh_bit base_sign;
     pmesh_wedge_models wedge;
+    pmesh_join_models join;
     pmesh_number value[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS][2];
     pmesh_bit value_sign[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS][2];
 } pmesh_models;

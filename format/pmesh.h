@@ -40,6 +40,7 @@ extern "C" {
 typedef enum pmesh_status {
     PMESH_OK = 0,
     PMESH_NEED_DATA = 1,     /* not an error: feed more bytes */
+    PMESH_MORE = 2,          /* not an error: max_ops were used up, go on */
     PMESH_E_ARGUMENT = -1,   /* the caller broke a documented precondition */
     PMESH_E_MEMORY = -2,     /* the allocator returned NULL */
     PMESH_E_LIMIT = -3,      /* valid, but larger than the config allows */
@@ -140,6 +141,11 @@ typedef enum pmesh_placement {
     PMESH_SUBSET = 0, /* every level's vertices are vertices of the input */
     PMESH_OPTIMAL = 1 /* vertices move to where the error is least */
 } pmesh_placement;
+
+typedef enum pmesh_metric {
+    PMESH_MEMORYLESS = 0, /* quadrics of the current surface: most accurate */
+    PMESH_ACCUMULATED = 1 /* quadrics summed from the original (1997) */
+} pmesh_metric;
 
 /* Who codes the shape of the base mesh. Attributes are coded by ourselves in
  * both cases. */

@@ -324,18 +324,26 @@ void pmesh_predict_learn(const pmesh_prediction *p, const int32_t position[3],
 }
 
 /* For rings of any size. */
-static void shift_neighbours(pmesh_codec *c, uint32_t x, const uint32_t by[3])
+static void shift_ring(pmesh_codec *c, uint32_t start, const uint32_t by[3])
 {
     const pmesh_mesh *m = &c->mesh;
-    uint32_t h = m->first[x], last;
+    uint32_t h = start, last;
     do {
         last = pmesh_prev(h);
         for (int k = 0; k < 3; k++)
             c->around[m->vertex[pmesh_next(h)]][k] += by[k];
         h = m->twin[last];
-    } while (h != PMESH_NONE && h != m->first[x]);
+    } while (h != PMESH_NONE && h != start);
     for (int k = 0; k < 3 && h == PMESH_NONE; k++)
         c->around[m->vertex[last]][k] += by[k];
+}
+
+static void shift_neighbours(pmesh_codec *c, uint32_t x, const uint32_t by[3])
+{
+    const pmesh_mesh *m = &c->mesh;
+    for (uint32_t fan = m->first[x]; fan != PMESH_NONE;
+         fan = m->fan ? m->fan[fan] : PMESH_NONE)
+        shift_ring(c, fan, by);
 }
 
 void pmesh_place(pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
@@ -348,7 +356,7 @@ void pmesh_place(pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
     if (!(by[0] | by[1] | by[2]))
         return;
     memcpy(at, position, sizeof *c->mesh.position);
-    if (!ring) {
+    if (!ring || c->mesh.fan) {
         shift_neighbours(c, x, by);
         return;
     }

@@ -8,11 +8,14 @@ enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS };
 uint64_t pmesh_rank_scratch(const pmesh_codec_sizes *sizes)
 {
     const uint64_t splits = sizes->block_splits, wedges = sizes->block_wedges;
-    /* The largest user: three numbers for each of six half-edges a split, or a
-     * wedge's map, its three numbers and its values. */
-    const uint64_t for_faces = 20 * splits;
+    /* The largest user: four numbers a face, three a split, or a wedge's map,
+     * its three numbers and its values. */
+    const uint64_t for_faces = 4 * pmesh_block_faces(sizes);
+    const uint64_t for_splits = 3 * splits;
     const uint64_t for_wedges = wedges * (4 + sizes->value_count);
-    return (for_faces > for_wedges ? for_faces : for_wedges) + 2 * splits;
+    uint64_t most = for_faces > for_wedges ? for_faces : for_wedges;
+    most = most > for_splits ? most : for_splits;
+    return most + 2 * splits;
 }
 
 /* A 16-bit key that grows with value: 5 bits of exponent, 11 of mantissa. */
@@ -78,12 +81,10 @@ static void rename_children(pmesh_codec *c)
     pmesh_mesh *m = &c->mesh;
     const uint32_t first = c->block.vertex, n = c->block.vertex_count;
     for (uint32_t i = 0; i < n; i++) {
-        const uint32_t start = m->first[first + c->child_order[i]];
-        uint32_t h = start;
-        do {
+        uint32_t start = m->first[first + c->child_order[i]];
+        for (uint32_t h = start; h != PMESH_NONE;
+             h = pmesh_corner_next(m, &start, h))
             m->vertex[h] = first + i;
-            h = pmesh_turn_left(m, h);
-        } while (h != PMESH_NONE && h != start);
     }
     permute(m->first + first, n, 1, c->child_order, c->scratch);
     permute(m->parent + first, n, 1, c->child_order, c->scratch);
@@ -113,17 +114,44 @@ static void order_faces(pmesh_codec *c)
     memcpy(c->child_face, start, b->vertex_count * sizeof *start);
 }
 
+/* Where the fans of the corners of new faces start: such a vertex may have
+ * several, and several such corners, but is done once. */
+static void rename_starts(pmesh_codec *c, const uint32_t *now)
+{
+    enum { DONE = 0x80 }; /* beside the state */
+    pmesh_mesh *m = &c->mesh;
+    const uint32_t edge = 3 * c->block.face, n = 3 * c->block.face_count;
+    for (uint32_t h = edge; h < edge + n; h++) {
+        const uint32_t v = m->vertex[h];
+        uint32_t *at = &m->first[v];
+        if (c->state[v] & DONE)
+            continue;
+        c->state[v] |= DONE;
+        while (at && *at != PMESH_NONE) {
+            const uint32_t old = *at;
+            if (old >= edge)
+                *at = 3 * now[(old - edge) / 3] + old % 3;
+            at = m->fan ? &m->fan[old] : NULL;
+        }
+    }
+    for (uint32_t h = edge; h < edge + n; h++)
+        c->state[m->vertex[h]] &= DONE - 1;
+}
+
 static void rename_faces(pmesh_codec *c)
 {
     pmesh_mesh *m = &c->mesh;
     const uint32_t begin = c->block.face, n = c->block.face_count;
     const uint32_t edge = 3 * begin;
-    uint32_t *now = c->scratch + 6 * (size_t)n, *scratch = c->scratch;
+    uint32_t *now = c->scratch + 3 * (size_t)n, *scratch = c->scratch;
 
     for (uint32_t i = 0; i < n; i++)
         now[c->face_order[i]] = begin + i;
+    rename_starts(c, now);
     permute(m->vertex + edge, n, 3, c->face_order, scratch);
     permute(m->twin + edge, n, 3, c->face_order, scratch);
+    if (m->fan)
+        permute(m->fan + edge, n, 3, c->face_order, scratch);
     if (m->wedge)
         permute(m->wedge + edge, n, 3, c->face_order, scratch);
     if (m->material)
@@ -138,19 +166,6 @@ static void rename_faces(pmesh_codec *c)
         else
             m->twin[t] = h;
     }
-    /* first[] may lie in a new face; such vertices have a corner there. A new
-     * number can equal another's old one, so mark what is done by order: the
-     * old number of h tells whether first[] meant it. */
-    for (uint32_t i = 0; i < n; i++)
-        for (uint32_t k = 0; k < 3; k++)
-            scratch[3 * c->face_order[i] + k] = m->vertex[edge + 3 * i + k];
-    for (uint32_t old = 0; old < 3 * n; old++) {
-        const uint32_t v = scratch[old];
-        scratch[3 * n + old] = m->first[v] == edge + old;
-    }
-    for (uint32_t old = 0; old < 3 * n; old++)
-        if (scratch[3 * n + old])
-            m->first[scratch[old]] = 3 * now[old / 3] + old % 3;
 }
 
 /* Gives w a number if it is the block's and has none. */
@@ -173,12 +188,11 @@ static void number_wedges(pmesh_codec *c, uint32_t *number)
         const uint32_t face = c->child_face[u - b->vertex];
         for (uint32_t h = 3 * face; h < 3 * c->face_end[u]; h++)
             count_wedge(number, b, pmesh_birth_wedge(m, h, u), &next);
-        uint32_t h = m->first[u];
-        do {
+        uint32_t start = m->first[u];
+        for (uint32_t h = start; h != PMESH_NONE;
+             h = pmesh_corner_next(m, &start, h))
             if (h < 3 * face)
                 count_wedge(number, b, m->wedge[h], &next);
-            h = pmesh_turn_left(m, h);
-        } while (h != PMESH_NONE && h != m->first[u]);
         c->wedge_end[u] = next;
     }
     /* Some are seen only in orders that did not happen. */
@@ -219,12 +233,11 @@ static void rename_wedges(pmesh_codec *c)
     for (uint32_t h = 3 * b->face; h < 3 * (b->face + b->face_count); h++)
         m->wedge[h] = renamed(number, b, m->wedge[h]);
     for (uint32_t u = b->vertex; u < b->vertex + b->vertex_count; u++) {
-        uint32_t h = m->first[u];
-        do {
+        uint32_t start = m->first[u];
+        for (uint32_t h = start; h != PMESH_NONE;
+             h = pmesh_corner_next(m, &start, h))
             if (h < 3 * b->face)
                 m->wedge[h] = renamed(number, b, m->wedge[h]);
-            h = pmesh_turn_left(m, h);
-        } while (h != PMESH_NONE && h != m->first[u]);
     }
     permute(m->wedge_vertex + b->wedge, b->wedge_count, 1, c->wedge_order,
             scratch);
@@ -248,11 +261,10 @@ void pmesh_block_rank(pmesh_codec *c)
         rename_wedges(c);
         /* wedge_vertex named children in coding order. */
         for (uint32_t u = b->vertex; u < b->vertex + b->vertex_count; u++) {
-            uint32_t h = c->mesh.first[u];
-            do {
+            uint32_t start = c->mesh.first[u];
+            for (uint32_t h = start; h != PMESH_NONE;
+                 h = pmesh_corner_next(&c->mesh, &start, h))
                 c->mesh.wedge_vertex[c->mesh.wedge[h]] = u;
-                h = pmesh_turn_left(&c->mesh, h);
-            } while (h != PMESH_NONE && h != c->mesh.first[u]);
         }
     }
 }

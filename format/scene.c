@@ -59,7 +59,7 @@ static const char *read_levels(pmesh_cursor *in, pmesh_scene_head *h)
 
     h->level_count = pmesh_get_u8(in);
     if (h->level_count < 1 || h->level_count > PMESH_MAX_LEVELS)
-        return "SPEC 8.2: 1 to 64 levels";
+        return "SPEC 11.2: 1 to 64 levels";
     for (uint32_t i = 0; i < h->level_count; i++) {
         pmesh_scene_row *row = &h->levels[i];
         row->bytes = sum_within(in, last.bytes, PMESH_MAX_FILE);
@@ -67,7 +67,7 @@ static const char *read_levels(pmesh_cursor *in, pmesh_scene_head *h)
         row->vertices = sum_within(in, last.vertices, PMESH_MAX_FILE);
         row->error = pmesh_get_f32(in);
         if (!is_amount(row->error) || (i > 0 && row->error > last.error))
-            return "SPEC 8.2: a level's error is not a distance that falls";
+            return "SPEC 11.2: a level's error is not a distance that falls";
         last = *row;
     }
     return NULL;
@@ -77,17 +77,17 @@ pmesh_status pmesh_scene_head_read(pmesh_cursor *in, pmesh_scene_head *h,
                                    const char **rule)
 {
     if (pmesh_get_u8(in) != PMESH_SCENE_VERSION && !in->overrun) {
-        *rule = "SPEC 8.2: an unknown version of scenes";
+        *rule = "SPEC 11.2: an unknown version of scenes";
         return PMESH_E_VERSION;
     }
     h->content_hash = pmesh_get(in, 8);
     h->chunk_size = pmesh_get_count(in, PMESH_MAX_CHUNK_SIZE);
     h->document_size = pmesh_get_count(in, PMESH_MAX_CHUNK_SIZE);
-    h->mesh_count = pmesh_get_count(in, PMESH_MAX_PARTS);
-    h->resource_count = pmesh_get_count(in, PMESH_MAX_PARTS);
+    h->mesh_count = pmesh_get_count(in, PMESH_MAX_SCENE_PARTS);
+    h->resource_count = pmesh_get_count(in, PMESH_MAX_SCENE_PARTS);
     *rule = read_levels(in, h);
     if (!*rule && (in->overrun || h->mesh_count == 0))
-        *rule = "SPEC 8.2: a count is out of range";
+        *rule = "SPEC 11.2: a count is out of range";
     return *rule ? PMESH_E_CORRUPT : PMESH_OK;
 }
 
@@ -105,7 +105,7 @@ pmesh_status pmesh_scene_lists_read(pmesh_cursor *in,
         meshes[i].size = total - before;
         meshes[i].scale = pmesh_get_f32(in);
         if (!is_amount(meshes[i].scale))
-            *rule = "SPEC 8.2: a mesh's scale is not a factor";
+            *rule = "SPEC 11.2: a mesh's scale is not a factor";
     }
     for (uint32_t i = 0; i < h->resource_count && !*rule; i++) {
         const uint64_t before = total;
@@ -113,6 +113,6 @@ pmesh_status pmesh_scene_lists_read(pmesh_cursor *in,
         resources[i] = total - before;
     }
     if (!*rule && (in->overrun || in->next != in->end))
-        *rule = "SPEC 8.2: the header's size does not fit its fields";
+        *rule = "SPEC 11.2: the header's size does not fit its fields";
     return *rule ? PMESH_E_CORRUPT : PMESH_OK;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * scene.h - the header chunk of a scene file, read and written in one place
- * (SPEC 8.2).
+ * (SPEC 11.2).
  */
 #ifndef PMESH_SCENE_FORMAT_H
 #define PMESH_SCENE_FORMAT_H

@@ -6,6 +6,7 @@ const char *pmesh_status_text(pmesh_status status)
     switch (status) {
     case PMESH_OK: return "done";
     case PMESH_NEED_DATA: return "more bytes are needed";
+    case PMESH_MORE: return "more work is left";
     case PMESH_E_ARGUMENT: return "an argument is out of range";
     case PMESH_E_MEMORY: return "out of memory";
     case PMESH_E_LIMIT: return "larger than the limits allow";

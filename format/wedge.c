@@ -44,15 +44,13 @@ static pmesh_status make_wedge(pmesh_codec *c, const pmesh_oracle *oracle,
  * already; PMESH_NONE if there is none near (the wedge is then made again). */
 static uint32_t find_place(const pmesh_mesh *m, corner a)
 {
-    const uint32_t start = m->first[m->vertex[a.half_edge]];
-    uint32_t h = start, place = 0;
+    uint32_t start = m->first[m->vertex[a.half_edge]], h = start;
     if (a.wedge == PMESH_NONE)
         return PMESH_NONE;
-    do {
+    for (uint32_t place = 0; h != PMESH_NONE && place < PMESH_MAX_PLACE;
+         place++, h = pmesh_corner_next(m, &start, h))
         if (m->wedge[h] == a.wedge)
             return place;
-        h = pmesh_turn_left(m, h);
-    } while (h != PMESH_NONE && h != start && ++place < PMESH_MAX_PLACE);
     return PMESH_NONE;
 }
 
@@ -60,17 +58,13 @@ static pmesh_status pick_wedge(pmesh_codec *c, pmesh_coder *coder, corner a,
                                uint32_t place)
 {
     pmesh_mesh *m = &c->mesh;
-    const uint32_t start = m->first[m->vertex[a.half_edge]];
-    uint32_t h = start;
+    uint32_t start = m->first[m->vertex[a.half_edge]], h = start;
 
     place = pmesh_code_number(coder, &c->models.wedge.pick, place);
     if (place >= PMESH_MAX_PLACE)
         return corrupt(c, "SPEC 6.6: a corner's place is out of range");
-    for (; place > 0 && h != PMESH_NONE; place--) {
-        h = pmesh_turn_left(m, h);
-        if (h == start)
-            h = PMESH_NONE;
-    }
+    for (; place > 0 && h != PMESH_NONE; place--)
+        h = pmesh_corner_next(m, &start, h);
     if (h == PMESH_NONE || m->wedge[h] == PMESH_NONE)
         return corrupt(c, "SPEC 6.6: no wedge at that corner");
     m->wedge[a.half_edge] = m->wedge[h];
@@ -83,13 +77,11 @@ static uint32_t parent_like(const pmesh_mesh *m, uint32_t h, uint32_t guess)
 {
     if (guess != PMESH_NONE)
         return m->wedge_parent[guess];
-    const uint32_t start = m->first[m->vertex[h]];
-    uint32_t k = start;
-    do {
+    uint32_t start = m->first[m->vertex[h]];
+    for (uint32_t k = start; k != PMESH_NONE;
+         k = pmesh_corner_next(m, &start, k))
         if (m->wedge[k] != PMESH_NONE)
             return m->wedge_parent[m->wedge[k]];
-        k = pmesh_turn_left(m, k);
-    } while (k != PMESH_NONE && k != start);
     return PMESH_NONE;
 }
 
@@ -131,14 +123,13 @@ pmesh_status pmesh_wedge_ring_code(pmesh_codec *c, pmesh_coder *coder,
     pmesh_mesh *m = &c->mesh;
     if (!m->value_count)
         return PMESH_OK;
-    const uint32_t start = m->first[x];
-    uint32_t h = start, before = PMESH_NONE;
-    do {
+    uint32_t start = m->first[x], before = PMESH_NONE;
+    for (uint32_t h = start; h != PMESH_NONE;
+         h = pmesh_corner_next(m, &start, h))
         m->wedge[h] = PMESH_NONE;
-        h = pmesh_turn_left(m, h);
-    } while (h != PMESH_NONE && h != start);
-    h = start;
-    do {
+    start = m->first[x];
+    for (uint32_t h = start; h != PMESH_NONE;
+         h = pmesh_corner_next(m, &start, h)) {
         const pmesh_status status =
             before == PMESH_NONE
                 ? make_wedge(c, oracle, ask(oracle, h), PMESH_NONE)
@@ -146,20 +137,25 @@ pmesh_status pmesh_wedge_ring_code(pmesh_codec *c, pmesh_coder *coder,
         if (status != PMESH_OK)
             return status;
         before = m->wedge[h];
-        h = pmesh_turn_left(m, h);
-    } while (h != PMESH_NONE && h != start);
+    }
     return PMESH_OK;
 }
 
 /* What a split changed: the corners of u, those of v and the wings in the new
- * faces, and the best guesses for the latter. */
-enum { MOST_CORNERS = PMESH_MAX_RING + 1 }; /* all but one face of v, 2 new */
+ * faces, and the best guesses for the latter. A vertex has no more corners than
+ * ring members; each fan that is cut has two members at least and gives u two
+ * corners more, and the others four; a pair of lone faces, as many. */
+enum {
+    MOST_NEW = PMESH_MAX_PARTS + PMESH_MAX_LONE,
+    MOST_CORNERS = PMESH_MAX_RING + 2 * MOST_NEW,
+    MOST_OTHERS = 4 * MOST_NEW
+};
 typedef struct change {
     uint32_t count; /* corners of u */
     uint32_t at_u[MOST_CORNERS];
     uint32_t coarse[MOST_CORNERS]; /* their wedges before, or PMESH_NONE */
     uint32_t others;
-    uint32_t at[4], guess[4], second[4];
+    uint32_t at[MOST_OTHERS], guess[MOST_OTHERS], second[MOST_OTHERS];
 } change;
 
 static void add_other(change *d, uint32_t h, uint32_t guess, uint32_t second)
@@ -180,31 +176,39 @@ static uint32_t wedge_end(const pmesh_mesh *m, uint32_t h)
     return h == PMESH_NONE ? PMESH_NONE : m->wedge[pmesh_next(h)];
 }
 
-static void change_gather(change *d, pmesh_mesh *m, uint32_t u, uint32_t a,
-                          uint32_t b)
+/* The first corner of x, from first[] on, in a face older than half-edge
+ * `fresh`; PMESH_NONE if there is none. */
+static uint32_t older_corner(const pmesh_mesh *m, uint32_t x, uint32_t fresh)
 {
-    const uint32_t start = m->first[u], new_face = a != PMESH_NONE ? a : b;
-    uint32_t h = start, coarse = PMESH_NONE;
-    d->count = d->others = 0;
-    do {
-        d->at_u[d->count] = h;
-        d->coarse[d->count] = h < new_face ? m->wedge[h] : PMESH_NONE;
-        if (h < new_face && coarse == PMESH_NONE)
-            coarse = m->wedge[h];
-        d->count++;
-        h = pmesh_turn_left(m, h);
-    } while (h != PMESH_NONE && h != start && d->count < MOST_CORNERS);
+    uint32_t start = m->first[x], h = start;
+    while (h != PMESH_NONE && h >= fresh)
+        h = pmesh_corner_next(m, &start, h);
+    return h;
+}
 
-    /* Face a is (v, a, u), face b is (v, u, b). Around v the neighbours of the
-     * new faces lie across v-a and v-b, around the wings also across u-a and
-     * u-b. If v kept no other face, it had the wedge of what moved. */
+static uint32_t first_fresh(const pmesh_fresh *f)
+{
+    if (f->count == 0)
+        return f->lone;
+    return f->face[0][0] != PMESH_NONE ? f->face[0][0] : f->face[0][1];
+}
+
+/* Face a is (v, a, u), face b is (v, u, b). Around v the neighbours of the new
+ * faces lie across v-a and v-b, around the wings also across u-a and u-b. If v
+ * kept no other face there, it had the wedge of what moved. */
+static void gather_wings(change *d, const pmesh_mesh *m, uint32_t a, uint32_t b,
+                         uint32_t start, uint32_t fresh)
+{
     uint32_t at_v_a = PMESH_NONE, at_v_b = PMESH_NONE;
     if (a != PMESH_NONE)
         at_v_a = wedge_end(m, m->twin[a]);
     if (b != PMESH_NONE)
         at_v_b = wedge_at(m, m->twin[b + 2]);
-    if (at_v_a == PMESH_NONE && at_v_b == PMESH_NONE)
-        at_v_a = coarse;
+    if (at_v_a == PMESH_NONE && at_v_b == PMESH_NONE) {
+        while (start != PMESH_NONE && start >= fresh)
+            start = pmesh_turn_left(m, start); /* some face has moved */
+        at_v_a = wedge_at(m, start);
+    }
     if (a != PMESH_NONE) {
         add_other(d, a, at_v_a, at_v_b);
         add_other(d, a + 1, wedge_end(m, m->twin[a + 1]),
@@ -215,6 +219,37 @@ static void change_gather(change *d, pmesh_mesh *m, uint32_t u, uint32_t a,
         add_other(d, b + 2, wedge_at(m, m->twin[b + 1]),
                   wedge_end(m, m->twin[b + 2]));
     }
+}
+
+/* A lone face has no neighbours: v and the third vertex are guessed as in
+ * their first older face, v also as in what moved. */
+static void gather_lone(change *d, const pmesh_mesh *m, uint32_t h, uint32_t u,
+                        uint32_t fresh)
+{
+    const uint32_t at_v = m->vertex[h] == u ? h + 1 : h;
+    uint32_t older = older_corner(m, m->vertex[at_v], fresh);
+    if (older == PMESH_NONE)
+        older = older_corner(m, u, fresh);
+    add_other(d, at_v, wedge_at(m, older), PMESH_NONE);
+    older = older_corner(m, m->vertex[h + 2], fresh);
+    add_other(d, h + 2, wedge_at(m, older), PMESH_NONE);
+}
+
+static void change_gather(change *d, pmesh_mesh *m, uint32_t u,
+                          const pmesh_fresh *f)
+{
+    const uint32_t fresh = first_fresh(f);
+    uint32_t start = m->first[u];
+    d->count = d->others = 0;
+    for (uint32_t h = start; h != PMESH_NONE && d->count < MOST_CORNERS;
+         h = pmesh_corner_next(m, &start, h)) {
+        d->at_u[d->count] = h;
+        d->coarse[d->count++] = h < fresh ? m->wedge[h] : PMESH_NONE;
+    }
+    for (uint32_t i = 0; i < f->count; i++)
+        gather_wings(d, m, f->face[i][0], f->face[i][1], f->start[i], fresh);
+    for (uint32_t h = f->lone; h < f->lone_end; h += 3)
+        gather_lone(d, m, h, u, fresh);
     for (uint32_t i = 0; i < d->count; i++)
         m->wedge[d->at_u[i]] = PMESH_NONE;
     for (uint32_t i = 0; i < d->others; i++)
@@ -317,13 +352,13 @@ static pmesh_status code_child(pmesh_codec *c, pmesh_coder *coder,
 
 static pmesh_status code_wedges(pmesh_codec *c, pmesh_coder *coder,
                                 const pmesh_oracle *oracle, uint32_t u,
-                                uint32_t a, uint32_t b)
+                                const pmesh_fresh *fresh)
 {
     pmesh_mesh *m = &c->mesh;
     change d;
-    change_gather(&d, m, u, a, b);
+    change_gather(&d, m, u, fresh);
     /* What of v is one level coarser for wedges that no moved face has. */
-    uint32_t coarse = first_guess(&d, 0);
+    uint32_t coarse = d.others ? first_guess(&d, 0) : PMESH_NONE;
     for (uint32_t i = 0; i < d.count && coarse == PMESH_NONE; i++)
         coarse = d.coarse[i];
 
@@ -411,24 +446,42 @@ static pmesh_status code_materials(pmesh_codec *c, pmesh_coder *coder,
     return PMESH_OK;
 }
 
-pmesh_status pmesh_wedge_split_code(pmesh_codec *c, pmesh_coder *coder,
-                                    const pmesh_oracle *oracle, uint32_t u,
-                                    pmesh_cut cut)
+/* Lone faces: like the face that v's wedge is guessed from. */
+static pmesh_status code_lone_materials(pmesh_codec *c, pmesh_coder *coder,
+                                        const pmesh_oracle *oracle, uint32_t u,
+                                        const pmesh_fresh *f)
 {
-    pmesh_mesh *m = &c->mesh;
-    const uint32_t faces =
-        cut.first != PMESH_NONE && cut.end != PMESH_NONE ? 2 : 1;
-    const uint32_t face = 3 * (m->face_count - faces);
-    const uint32_t a = cut.first != PMESH_NONE ? face : PMESH_NONE;
-    const uint32_t b = cut.end == PMESH_NONE ? PMESH_NONE
-                       : faces == 2          ? face + 3
-                                             : face;
-    if (m->material) {
-        const pmesh_status status = code_materials(c, coder, oracle, a, b);
+    const pmesh_mesh *m = &c->mesh;
+    const uint32_t fresh = first_fresh(f);
+    for (uint32_t h = f->lone; h < f->lone_end; h += 3) {
+        uint32_t older = older_corner(m, m->parent[u], fresh);
+        if (older == PMESH_NONE)
+            older = older_corner(m, u, fresh);
+        const uint32_t guess = m->material[older / 3];
+        const pmesh_status status =
+            pmesh_material_code(c, coder, oracle, h / 3, guess, guess);
         if (status != PMESH_OK)
             return status;
     }
-    return m->value_count ? code_wedges(c, coder, oracle, u, a, b) : PMESH_OK;
+    return PMESH_OK;
+}
+
+pmesh_status pmesh_wedge_split_code(pmesh_codec *c, pmesh_coder *coder,
+                                    const pmesh_oracle *oracle, uint32_t u,
+                                    const pmesh_fresh *f)
+{
+    const pmesh_mesh *m = &c->mesh;
+    pmesh_status status = PMESH_OK;
+    if (m->material) {
+        for (uint32_t i = 0; i < f->count && status == PMESH_OK; i++)
+            status = code_materials(c, coder, oracle, f->face[i][0],
+                                    f->face[i][1]);
+        if (status == PMESH_OK)
+            status = code_lone_materials(c, coder, oracle, u, f);
+        if (status != PMESH_OK)
+            return status;
+    }
+    return m->value_count ? code_wedges(c, coder, oracle, u, f) : PMESH_OK;
 }
 
 /* Mean of the values at the other corners of the wedge's faces, from the corner

@@ -14,11 +14,19 @@
 pmesh_status pmesh_wedge_ring_code(pmesh_codec *c, pmesh_coder *coder,
                                    const pmesh_oracle *oracle, uint32_t x);
 
+/* The new faces of a split, by their first half-edges. */
+typedef struct pmesh_fresh {
+    uint32_t count;                     /* fans that were cut, and of each */
+    uint32_t face[PMESH_MAX_PARTS][2];  /* face a, face b, or PMESH_NONE; */
+    uint32_t start[PMESH_MAX_PARTS];    /* where u's part of it starts */
+    uint32_t lone, lone_end;            /* of a joined mesh: the lone faces */
+} pmesh_fresh;
+
 /* Codes wedges and materials of what the split that made u changed: all
  * corners of u, and those of v and the wings in the new faces. */
 pmesh_status pmesh_wedge_split_code(pmesh_codec *c, pmesh_coder *coder,
                                     const pmesh_oracle *oracle, uint32_t u,
-                                    pmesh_cut cut);
+                                    const pmesh_fresh *fresh);
 
 /* Codes the values of the block's wedge w, all wedges before it being known. */
 pmesh_status pmesh_wedge_values_code(pmesh_codec *c, pmesh_coder *coder,

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Usage: tests/install-deps.sh [--check] GROUP...   (groups: build test bench cross)
+# Usage: tests/install-deps.sh [--check] GROUP...
+# of the groups build, test, bench, cross and web.
 #
 # Installs the Debian packages of what is missing, by apt-get as root or
 # through sudo. If nothing is missing it does nothing, offline too. --check
@@ -68,6 +69,14 @@ group_cross() {
     need wasi-libc test -e /usr/lib/wasm32-wasi/libc.a
     need libclang-rt-dev-wasm32 links clang --target=wasm32-wasi
     need nodejs program node
+}
+
+group_web() {
+    need clang program clang
+    need lld program wasm-ld
+    need nodejs program node
+    need npm program npm
+    need chromium program chromium
 }
 
 only_check=false

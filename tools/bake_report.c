@@ -76,6 +76,11 @@ void bake_report_print(const bake_report *r, FILE *out, bool verbose)
             " faces, %" PRIu32 " vertices%s\n",
             e->level_count, e->base_faces, e->base_vertices,
             e->base_coder == PMESH_BASE_DRACO ? ", by Draco" : "");
+    if (e->joined)
+        fprintf(out,
+                "  joined: %" PRIu32 " vertices where sheets meet, %" PRIu32
+                " pieces that become %" PRIu32 "\n",
+                e->joined_vertices, e->components, e->base_components);
     fprintf(out,
             "  %.2f s: reading %.2f, import %.2f, contraction %.2f, "
             "coding %.2f\n",
@@ -102,6 +107,9 @@ static void json_counts(json *j, const pmesh_encode_report *e)
     json_count(j, "base_faces", e->base_faces);
     json_count(j, "base_vertices", e->base_vertices);
     json_count(j, "components", e->components);
+    json_count(j, "base_components", e->base_components);
+    json_bool(j, "joined", e->joined != 0);
+    json_count(j, "joined_vertices", e->joined_vertices);
     json_count(j, "position_bits", e->grid.bits);
     json_number(j, "step", e->grid.step);
     json_open_flat(j, "parts", '{');

@@ -28,6 +28,9 @@ int cmd_info(int argc, char **argv);
 int cmd_verify(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
 int cmd_sheet(int argc, char **argv);
+int cmd_simplify(int argc, char **argv);
+int cmd_plan(int argc, char **argv);
+int cmd_view(int argc, char **argv);
 int cmd_sample(int argc, char **argv);
 
 #endif

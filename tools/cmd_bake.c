@@ -20,7 +20,7 @@
 
 typedef struct options {
     const char *input, *output;
-    int profile, placement, metric, base;
+    int profile, placement, metric, base, topology;
     int format; /* which of CMD_FORMATS; -1: not given */
     uint32_t position_bits, normal_bits, uv_bits, color_bits, generic_bits;
     uint32_t base_faces, threads;
@@ -86,7 +86,12 @@ static const args_option option_table[] = {
     { .name = "threshold", .kind = ARGS_NUMBER, .value = "T", .min = 0,
       .max = DBL_MAX, AT(threshold),
       .help = "also contract unconnected vertices closer than T\n"
-              "(no effect yet: format 0 cannot code it)" },
+              "(model units); default 0: none" },
+    { .name = "topology", .kind = ARGS_CHOICE, .value = "auto|keep|join",
+      AT(topology),
+      .help = "where coarse levels are not manifold or in pieces:\n"
+              "keep parts sheets and keeps every piece, join lets\n"
+              "both meet; auto (default) joins where it helps" },
     { .name = "format", .kind = ARGS_CHOICE, .value = CMD_FORMATS, AT(format),
       .help = "format of IN; default by its name or its bytes" },
     { .name = "input", .letter = 'i', .kind = ARGS_TEXT, .value = "IN",
@@ -131,6 +136,8 @@ static int check_options(const options *o, int operand_count)
 {
     const int inputs = operand_count + (o->input != NULL);
 
+    if (o->threshold > 0 && o->topology == PMESH_TOPOLOGY_KEEP)
+        return usage("--threshold joins pieces, --topology keep does not");
     if (inputs != 1)
         return usage(inputs == 0 ? "no input is named"
                                  : "takes one input; merging is not in this "
@@ -169,6 +176,7 @@ static void configure(const options *o, pmesh_encoder_config *config)
     config->weld = o->weld;
     config->lossless = o->lossless;
     config->threshold = o->threshold;
+    config->topology = (pmesh_topology)o->topology;
     config->threads = o->threads;
 }
 
@@ -275,14 +283,15 @@ static int bake_merged(const options *o, const file_data *data,
         return code;
     report->seconds_read += progress_clock() - start;
     report_note_lines(&report->notes, mesh.warnings);
-    if (o->threshold > 0)
-        report_note(&report->notes, "--threshold has no effect yet: format 0 "
-                                    "codes contractions along edges only");
     code = encode(o, file_input_name(report->input), &mesh, report, bytes);
     asset_free(&mesh);
     if (code == CMD_DONE && (int)report->encode.base_coder != o->base)
-        report_note(&report->notes, "Draco cannot hold this base mesh, which "
-                                    "is coded natively instead");
+        report_note(&report->notes,
+                    report->encode.joined
+                        ? "a base mesh whose sheets may join is coded "
+                          "natively (see --topology)"
+                        : "Draco cannot hold this base mesh, which is coded "
+                          "natively instead");
     return code;
 }
 

@@ -100,9 +100,9 @@ static void print_text(const char *path, const stream *s, uint64_t size,
     printf("base mesh    %" PRIu32 " faces, %" PRIu32 " vertices, %s coder\n",
            h->base_faces, h->base_mesh_vertices,
            levels_base_name(h->base_coder));
-    printf("levels       %" PRIu32 ", %s profile, %s placement\n",
+    printf("levels       %" PRIu32 ", %s profile, %s placement%s\n",
            h->level_count, levels_profile_name(h->profile),
-           levels_placement_name(h->placement));
+           levels_placement_name(h->placement), h->joined ? ", joined" : "");
     printf("positions    %u bits, step %.6g\n", h->grid.bits, h->grid.step);
     if (h->exact_bytes > 0)
         printf("lossless     exact floats in the last %" PRIu64
@@ -180,6 +180,7 @@ static void print_json(const char *path, const stream *s, uint64_t size)
     json_text(&j, "profile", levels_profile_name(h->profile));
     json_text(&j, "placement", levels_placement_name(h->placement));
     json_count(&j, "position_bits", h->grid.bits);
+    json_bool(&j, "joined", h->joined != 0);
     json_bool(&j, "lossless", h->exact_bytes > 0);
     json_count(&j, "lossless_bytes", h->exact_bytes);
     json_grid(&j, h);

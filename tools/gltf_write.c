@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "tools/asset.h"
+#include "tools/base64.h"
 #include "tools/corners.h"
 #include "tools/utf8.h"
 
@@ -337,22 +338,6 @@ static void put_node(const writer *w, asset_bytes *out)
     asset_printf(out, "}],");
 }
 
-static void put_base64(asset_bytes *out, const asset_bytes *in)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnop"
-                                 "qrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < in->size && !out->failed; i += 3) {
-        const size_t n = in->size - i < 3 ? in->size - i : 3;
-        char text[4] = { 0, 0, '=', '=' };
-        uint32_t word = 0;
-        for (size_t k = 0; k < 3; k++)
-            word = word << 8 | (k < n ? in->data[i + k] : 0u);
-        for (size_t k = 0; k <= n; k++)
-            text[k] = digits[word >> (18 - 6 * k) & 63];
-        asset_put(out, text, sizeof text);
-    }
-}
-
 /* The document around the accessors and views written so far. */
 static void finish_json(writer *w, asset_bytes *out, bool glb)
 {
@@ -367,7 +352,7 @@ static void finish_json(writer *w, asset_bytes *out, bool glb)
     asset_printf(out, "],\"buffers\":[{\"byteLength\":%zu", w->bin.size);
     if (!glb) {
         asset_printf(out, ",\"uri\":\"data:application/octet-stream;base64,");
-        put_base64(out, &w->bin);
+        base64_put(out, w->bin.data, w->bin.size);
         asset_printf(out, "\"");
     }
     asset_printf(out, "}]}");

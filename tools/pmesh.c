@@ -24,10 +24,13 @@ typedef struct subcommand {
 static const subcommand subcommands[] = {
     { "bake", cmd_bake, "turn a triangle mesh into a .pmesh file" },
     { "extract", cmd_extract, "write a mesh of any size out of a .pmesh" },
+    { "simplify", cmd_simplify, "write a mesh file with fewer faces" },
     { "info", cmd_info, "print what the header of a .pmesh says" },
     { "verify", cmd_verify, "decode .pmesh files and check every byte" },
     { "compare", cmd_compare, "measure the distance of two meshes" },
     { "sheet", cmd_sheet, "draw the levels of a .pmesh into a picture" },
+    { "plan", cmd_plan, "say how much of a .pmesh to load" },
+    { "view", cmd_view, "make a page that shows a .pmesh in a browser" },
     { "sample", cmd_sample, "write a mesh to try things with" },
 };
 #define SUBCOMMAND_COUNT (sizeof subcommands / sizeof *subcommands)

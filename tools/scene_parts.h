@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * scene_parts.h - a glTF scene taken apart for baking: meshes, and everything
- * else as a document and resources (SPEC 8.4).
+ * else as a document and resources (SPEC 11.4).
  */
 #ifndef SCENE_PARTS_H
 #define SCENE_PARTS_H

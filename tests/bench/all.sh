@@ -11,11 +11,15 @@ echo "== distance at equal face counts: strict quadric order"
 tests/bench/lod.sh
 echo "== distance at equal face counts: other programs"
 tests/bench/quality.sh
+echo "== attributes of simplified meshes"
+tests/bench/attributes.sh
 echo "== cost of exact positions"
 tests/bench/lossless.sh
 echo "== skinned levels in motion"
 tests/bench/skin.sh
 echo "== time to decode"
 tests/bench/decode.sh
+echo "== time of moving between levels"
+tests/bench/refine.sh
 echo "== time and memory"
 tests/bench/time.sh

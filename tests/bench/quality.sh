@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Usage: tests/bench/quality.sh
 #
-# Surface distance at equal face counts: levels of pmesh files against the
-# results of meshoptimizer and CGAL.
+# Surface distance at equal face counts: levels of pmesh files, and meshes of
+# pmesh simplify, against the results of meshoptimizer and CGAL.
 #
 # Writes quality.csv and prints geometric means relative to CGAL's
 # Lindstrom-Turk, of the cases that met the face count within 2 %.
@@ -38,6 +38,16 @@ ours() {
     done
 }
 
+# simplify MODEL PLACEMENT
+simplify() {
+    for percent in $percents; do
+        want=$(target "$1" "$percent")
+        "$PMESH" simplify "$1" -q --no-attributes --placement "$2" \
+            --faces "$want" -o "$dir/level.obj"
+        measure "$1" "simplify-$2" "$percent" "$want" 0 "$dir/level.obj"
+    done
+}
+
 {
     echo model,tool,percent,target,faces,rms,cpu_s
     models | while read -r model; do
@@ -51,6 +61,9 @@ ours() {
         for kind in balanced quality optimal; do
             ours "$model" "$kind"
         done
+        for placement in optimal endpoint; do
+            simplify "$model" "$placement"
+        done
     done
 } >"$OUT/quality.csv"
 
@@ -63,12 +76,12 @@ awk -F , -v percents="$percents" '
     }
     END {
         n = split(percents, percent, " ")
-        printf "%-10s", "rms / LT"
+        printf "%-17s", "rms / LT"
         for (p = 1; p <= n; p++)
             printf " %9s%% (n)", percent[p]
         print ""
         for (t = 1; t <= tools; t++) {
-            printf "%-10s", order[t]
+            printf "%-17s", order[t]
             for (p = 1; p <= n; p++) {
                 sum = count = 0
                 for (m in models) {

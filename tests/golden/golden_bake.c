@@ -26,7 +26,8 @@ typedef struct golden_case {
     uint8_t bits;
 } golden_case;
 
-static const golden_case cases[] = {
+/* Sheets and pieces are kept apart in these ... */
+static const golden_case kept[] = {
     { "triangle", GOLDEN_TRIANGLE, 3, 1, PMESH_BALANCED, PMESH_SUBSET, 4 },
     { "closed", SHAPE_TORUS, 72, 1, PMESH_COMPACT, PMESH_SUBSET, 12 },
     { "closed-moving", SHAPE_TORUS, 16, 40, PMESH_QUALITY, PMESH_OPTIMAL, 21 },
@@ -44,6 +45,14 @@ static const golden_case cases[] = {
     { "hubs", GOLDEN_SPINDLE, 60, 400, PMESH_BALANCED, PMESH_SUBSET, 9 },
     { "hubs-moving", GOLDEN_SPINDLE, 60, 1, PMESH_COMPACT, PMESH_OPTIMAL, 15 },
     { "blocks", GOLDEN_CHANNELS, 36, 1350, PMESH_COMPACT, PMESH_OPTIMAL, 24 },
+};
+
+/* ... and join in these. */
+static const golden_case joined[] = {
+    { "joined", SHAPE_SOUP, 90, 1, PMESH_COMPACT, PMESH_SUBSET, 9 },
+    { "leaves", GOLDEN_LEAVES, 42, 1, PMESH_BALANCED, PMESH_SUBSET, 12 },
+    { "leaves-moving", GOLDEN_LEAVES, 40, 60, PMESH_QUALITY, PMESH_OPTIMAL,
+      15 },
 };
 
 /* Puts a chunk that no decoder knows in front of the end chunk, where it moves
@@ -74,7 +83,8 @@ static void note_chunks(const shape_bytes *b, unsigned char seen[256])
     }
 }
 
-static int bake(const golden_case *g, uint32_t threads, shape_bytes *out)
+static int bake(const golden_case *g, pmesh_topology topology,
+                uint32_t threads, shape_bytes *out)
 {
     golden_mesh mesh;
     pmesh_encode_report report;
@@ -84,6 +94,7 @@ static int bake(const golden_case *g, uint32_t threads, shape_bytes *out)
     config.position_bits = g->bits;
     config.base_faces = g->base_faces;
     config.threads = threads;
+    config.topology = topology;
     golden_mesh_make(&mesh, g->mesh, g->size);
     mesh.shape->input = mesh.input;
     const pmesh_status status = shape_bake(mesh.shape, &config, out, &report);
@@ -124,6 +135,21 @@ static int is_complete(const unsigned char seen[256])
     return 1;
 }
 
+static int bake_all(const golden_case *list, size_t count,
+                    pmesh_topology topology, uint32_t threads, const char *dir,
+                    unsigned char seen[256])
+{
+    for (size_t i = 0; i < count; i++) {
+        shape_bytes bytes;
+        if (!bake(&list[i], topology, threads, &bytes) ||
+            !write_file(dir, list[i].name, &bytes))
+            return 0;
+        note_chunks(&bytes, seen);
+        free(bytes.data);
+    }
+    return 1;
+}
+
 int main(int argc, char **argv)
 {
     unsigned char seen[256] = { 0 };
@@ -133,13 +159,9 @@ int main(int argc, char **argv)
     }
     const uint32_t threads =
         argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        shape_bytes bytes;
-        if (!bake(&cases[i], threads, &bytes) ||
-            !write_file(argv[1], cases[i].name, &bytes))
-            return 1;
-        note_chunks(&bytes, seen);
-        free(bytes.data);
-    }
-    return !is_complete(seen);
+    return !bake_all(kept, sizeof kept / sizeof *kept, PMESH_TOPOLOGY_KEEP,
+                     threads, argv[1], seen) ||
+           !bake_all(joined, sizeof joined / sizeof *joined,
+                     PMESH_TOPOLOGY_JOIN, threads, argv[1], seen) ||
+           !is_complete(seen);
 }

@@ -132,6 +132,40 @@ static void make_spikes(shape_mesh *s)
         s->positions[3 * v + 2] = v % 97 == 48 ? (double)v * 0.25 : 0;
 }
 
+static void put_piece(shape_mesh *s, uint32_t kind, uint32_t *seed)
+{
+    static const uint32_t count[] = { 3, 3, 4, 5 };
+    pmesh_mesh_input *in = &s->input;
+    const uint32_t v = (uint32_t)in->vertex_count;
+    const double far = 1 + shape_random(seed, 400) / 10.0;
+    const double turns = shape_random(seed, 1000) / 1000.0;
+    for (uint32_t i = 0; i < count[kind]; i++)
+        put_vertex(in, s->positions, far + shape_random(seed, 100) / 50.0,
+                   turns + shape_random(seed, 100) / 2000.0,
+                   far / 2 + shape_random(seed, 100) / 50.0);
+    put_face(in, s->indices, v, v + 1, v + 2);
+    if (kind == 1)
+        put_face(in, s->indices, v + 1, v, v + 2);
+    if (kind == 2) {
+        put_face(in, s->indices, v, v + 2, v + 3);
+        put_face(in, s->indices, v + 2, v + 1, v + 3);
+        put_face(in, s->indices, v + 1, v, v + 3);
+    }
+    if (kind == 3) {
+        put_face(in, s->indices, v + 1, v, v + 3);
+        put_face(in, s->indices, v, v + 1, v + 4);
+    }
+}
+
+/* In place of n x n vertices. */
+static void make_leaves(shape_mesh *s, uint32_t n)
+{
+    uint32_t seed = 11;
+    s->input.vertex_count = s->input.face_count = 0;
+    for (uint32_t i = 0; i < n * n / 5; i++)
+        put_piece(s, shape_random(&seed, 4), &seed);
+}
+
 void golden_mesh_make(golden_mesh *m, int kind, uint32_t size)
 {
     const int base = kind < SHAPE_COUNT       ? kind
@@ -144,7 +178,9 @@ void golden_mesh_make(golden_mesh *m, int kind, uint32_t size)
         make_triangle(s);
     if (kind == GOLDEN_FAN || kind == GOLDEN_SPINDLE)
         make_hubs(s, size, 4, kind == GOLDEN_SPINDLE);
-    if (kind == GOLDEN_PATCHES)
+    if (kind == GOLDEN_LEAVES)
+        make_leaves(s, size);
+    if (kind == GOLDEN_PATCHES || kind == GOLDEN_LEAVES)
         add_patches(s);
     if (kind == GOLDEN_SPIKES)
         make_spikes(s);
@@ -153,6 +189,11 @@ void golden_mesh_make(golden_mesh *m, int kind, uint32_t size)
     m->input = s->input;
     if (kind == GOLDEN_CHANNELS)
         add_channels(m);
+    if (kind == GOLDEN_LEAVES) {
+        add_channel(m, PMESH_NORMAL, 0, 3, 10);
+        add_channel(m, PMESH_TEXCOORD, 0, 2, 12);
+        add_channel(m, PMESH_GENERIC, 0, 1, 8);
+    }
 }
 
 void golden_mesh_free(golden_mesh *m)

@@ -16,7 +16,10 @@ enum {
     GOLDEN_CHANNELS, /* a torus with eight attributes: all kinds, all numbers of
                         components, values of all sizes */
     GOLDEN_PATCHES,  /* a terrain with seven materials in patches */
-    GOLDEN_SPIKES    /* a plain that no prediction misses, but for spikes */
+    GOLDEN_SPIKES,   /* a plain that no prediction misses, but for spikes */
+    GOLDEN_LEAVES    /* pieces apart, with materials and three attributes:
+                        triangles, some doubled back to back, tetrahedra, and
+                        three triangles at an edge */
 };
 
 typedef struct golden_mesh {

@@ -46,7 +46,8 @@ static void put_frame(shape_bytes *out, const ref_header *h)
 {
     put(out, 0, 1); /* version */
     put(out, 0, 8); /* content_hash, mended later */
-    put(out, (uint64_t)h->profile + (h->moving ? 4 : 0), 1);
+    put(out,
+        (uint64_t)h->profile + (h->moving ? 4 : 0) + (h->joined ? 32 : 0), 1);
     put(out, (uint64_t)h->position_bits, 1);
     for (int i = 0; i < 3; i++)
         put_f64(out, h->origin[i]);
@@ -59,6 +60,10 @@ static void put_frame(shape_bytes *out, const ref_header *h)
     put_varint(out, h->block_wedges);
     put_varint(out, h->moved_corners);
     put_varint(out, 0); /* no names */
+    if (h->joined) {
+        put_varint(out, h->base_fans);
+        put_varint(out, h->block_faces);
+    }
 }
 
 static void put_attributes(shape_bytes *out, const ref_header *h)
@@ -131,7 +136,8 @@ static bool start(writer *w, const shape_bytes *file)
     }
     w->r = ref_decode(file->data, size);
     ref_header *h = &w->r->header;
-    h->block_splits = h->block_wedges = h->moved_corners = MOST;
+    h->block_splits = h->block_wedges = h->moved_corners = h->block_faces =
+        MOST;
     h->level_count = 1;
     h->lossless = h->draco = false;
     w->r->in.author = &w->author;
@@ -144,8 +150,11 @@ static void count_level(ref *r, ref_level *level, uint64_t splits, bool good)
 {
     const ref_level *was = level - 1;
     level->vertices = was->vertices + splits;
-    level->faces = good ? r->face_count : was->faces + 2 * splits;
-    level->wedges = good ? r->wedge_count : was->wedges + 40 * splits;
+    level->faces = good ? r->face_count
+                        : was->faces + (r->header.joined ? 64 : 2) * splits;
+    level->wedges = good ? r->wedge_count
+                         : was->wedges +
+                               (r->header.joined ? 200 : 40) * splits;
     if (r->header.attribute_count == 0)
         level->wedges = level->vertices;
 }
@@ -184,7 +193,8 @@ static shape_bytes finish(writer *w)
     const uint64_t splits = last->vertices - h->level[0].vertices;
     h->block_splits = splits;
     h->block_wedges = last->wedges - h->level[0].wedges;
-    h->moved_corners = 48 * splits;
+    h->block_faces = h->joined ? last->faces - h->level[0].faces : 0;
+    h->moved_corners = 48 * splits + h->block_faces;
     h->chunk_size = 1 << 20;
     add_chunk(w, CHUNK_END, &nothing);
     shape_bytes header = write_header(h);
@@ -217,6 +227,10 @@ static int choose_any(void *user, const ref_model *m)
         return shape_random(&w->seed, 3) > 0;
     if (within(m, &r->cut, sizeof r->cut))
         return shape_random(&w->seed, 16) > 0;
+    if (within(m, &r->join.lone, sizeof r->join.lone))
+        return shape_random(&w->seed, 4) == 0;
+    if (within(m, &r->join, sizeof r->join))
+        return (int)shape_random(&w->seed, 2);
     if (within(m, r->residual, sizeof r->residual))
         return shape_random(&w->seed, 50) ? 0 : expected;
     if (within(m, r->wedge_models.value, sizeof r->wedge_models.value))

@@ -46,7 +46,8 @@ static void make_shape(random_mesh *m)
         { SHAPE_SOUP, 5, 40 },     { SHAPE_PIECES, 1, 30 },
         { GOLDEN_TRIANGLE, 3, 1 }, { GOLDEN_FAN, 5, 12 },
         { GOLDEN_SPINDLE, 5, 12 }, { GOLDEN_FAN, 40, 16 },
-        { GOLDEN_SPINDLE, 40, 16 }, { GOLDEN_SPIKES, 4, 9 }
+        { GOLDEN_SPINDLE, 40, 16 }, { GOLDEN_SPIKES, 4, 9 },
+        { GOLDEN_LEAVES, 4, 12 }
     };
     const size_t count = sizeof kinds / sizeof *kinds;
     uint32_t i = below(m, (uint32_t)count);
@@ -232,6 +233,9 @@ static pmesh_encoder_config choose_config(random_mesh *m)
     c.position_bits =
         one_in(m, 3) ? 14 : (uint8_t)(4 + below(m, 21));
     c.lossless = one_in(m, 3);
+    c.topology = (pmesh_topology)below(m, 3);
+    if (c.topology != PMESH_TOPOLOGY_KEEP && one_in(m, 4))
+        c.threshold = 0.2 * (1 + fraction(m));
     c.base_faces = one_in(m, 4) ? 1 + below(m, 60) : 1;
     return c;
 }

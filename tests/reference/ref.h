@@ -21,7 +21,11 @@
 
 enum {
     REF_MEMBERS = 48, /* of a ring that may split, the ghost included */
-    REF_ROOM = 64,    /* more than the faces of any vertex after a split */
+    REF_ROOM = 64,    /* more than the faces of any fan after a split */
+    REF_FANS = 48,    /* of a vertex */
+    REF_PARTS = 24,   /* fans of a vertex that may split */
+    REF_LONE = 16,    /* lone faces of a split, and pairs of them */
+    REF_CORNERS = 192, /* more than a split changes of one vertex */
     REF_ATTRIBUTES = 8,
     REF_COMPONENTS = 4,
     REF_VALUES = REF_ATTRIBUTES * REF_COMPONENTS,
@@ -108,11 +112,11 @@ typedef struct ref_form {
 typedef struct ref_header {
     uint64_t content_hash;
     int profile, position_bits;
-    bool moving, draco, lossless;
+    bool moving, draco, lossless, joined;
     double origin[3], step;
     int64_t bounds[3];
     uint64_t material_count, chunk_size, block_splits, block_wedges,
-        moved_corners, names_size, exact_size;
+        moved_corners, names_size, exact_size, base_fans, block_faces;
     ref_form form[3];
     int attribute_count;
     ref_attribute attribute[REF_ATTRIBUTES];
@@ -128,6 +132,9 @@ enum { REF_UNVISITED, REF_KEPT, REF_PARENT, REF_NEWBORN, REF_GHOST };
 typedef struct ref_vertex {
     ref_vec at, born; /* now, and when it was new */
     uint32_t first, parent;
+    int more; /* fans but the first, and where they start */
+    uint32_t later[REF_FANS - 1];
+    uint32_t point; /* while the base is read, each is a fan: its vertex */
     int state;
     float exact[3];
 } ref_vertex;
@@ -201,6 +208,11 @@ typedef struct ref_residual_models {
     ref_number escape;
 } ref_residual_models;
 
+typedef struct ref_join_models {
+    ref_model whole[3], moves[2][3], lone[3], pair, turned, far, known;
+    ref_number member, back;
+} ref_join_models;
+
 typedef struct ref_wedge_models {
     ref_model material[3], ordinary[3], seam[3], corner[4], choice[2];
     ref_number pick, value[REF_VALUES][2];
@@ -239,6 +251,7 @@ typedef struct ref {
     ref_edge_list list;
     uint32_t base_vertices, base_faces, base_wedges;
     uint32_t exact_count;
+    uint32_t point_count; /* vertices so far while a joined base is read */
 
     bool has_base, in_level;
     int levels; /* that are complete */
@@ -253,6 +266,7 @@ typedef struct ref {
     ref_fit fit[3][9][3];
     ref_residual_models residual[2];
     ref_wedge_models wedge_models;
+    ref_join_models join;
     ref_exact_models exact_models;
     uint32_t exact_last[3][4096]; /* last vertex of a coordinate mod 4096 */
     uint64_t moved_corners;
@@ -291,7 +305,22 @@ uint32_t ref_left(const ref *r, uint32_t h); /* turning left */
 uint32_t ref_start_of(const ref *r, uint32_t h);
 uint32_t ref_end_of(const ref *r, uint32_t h);
 ref_ring ref_ring_of(const ref *r, uint32_t v);
+ref_ring ref_ring_from(const ref *r, uint32_t start);
+/* Fan i of v, NONE behind the last one. */
+uint32_t ref_fan(const ref *r, uint32_t v, int i);
+/* Appends a fan; false if there are too many. */
+bool ref_add_fan(ref *r, uint32_t v, uint32_t start);
+/* The fan of v that starts at `old` starts at `now`. */
+void ref_restart(ref *r, uint32_t v, uint32_t old, uint32_t now);
 uint32_t ref_degree(const ref *r, uint32_t v);
+/* All corners of a vertex: for (w = ref_walk_at(r, v); w.h != REF_NONE;
+ * ref_walk_on(r, &w)) */
+typedef struct ref_walk {
+    uint32_t v, start, h;
+    int fan;
+} ref_walk;
+ref_walk ref_walk_at(const ref *r, uint32_t v);
+void ref_walk_on(const ref *r, ref_walk *w);
 uint32_t ref_new_vertex(ref *r);
 uint32_t ref_new_face(ref *r, uint32_t a, uint32_t b, uint32_t c);
 uint32_t ref_new_wedge(ref *r, uint32_t corner);
@@ -309,6 +338,26 @@ typedef struct ref_cut {
     int first, end;
 } ref_cut;
 ref_cut ref_read_cut(ref *r, uint32_t v, const ref_ring *ring);
+
+/* 6.3. What a split makes: of each fan that is cut the faces a, b by their
+ * first half-edges, or NONE, and where u's part starts; lone faces likewise. */
+typedef struct ref_fresh {
+    uint32_t u, first_face;
+    int cuts, lones;
+    uint32_t a[REF_PARTS], b[REF_PARTS], start[REF_PARTS];
+    uint32_t lone[2 * REF_LONE];
+} ref_fresh;
+/* Cuts one fan of v, whose start goes to start_v. */
+void ref_cut_fan(ref *r, uint32_t v, const ref_ring *ring, ref_cut cut,
+                 ref_fresh *fresh, uint32_t *start_v);
+/* Of joined files. */
+typedef struct ref_fans {
+    int count, members;
+    bool large;
+    ref_ring ring[REF_PARTS];
+} ref_fans;
+ref_fans ref_fans_of(const ref *r, uint32_t v);
+void ref_part(ref *r, uint32_t v, const ref_fans *fans, ref_fresh *fresh);
 
 /* 6.5. */
 typedef struct ref_prediction {
@@ -330,9 +379,8 @@ void ref_read_positions(ref *r);
 /* 6.6. */
 void ref_read_base_materials(ref *r);
 void ref_read_base_wedges(ref *r);
-/* a, b: first half-edges of the faces, or NONE. */
-void ref_read_split_materials(ref *r, uint32_t a, uint32_t b);
-void ref_read_split_wedges(ref *r, uint32_t u, uint32_t a, uint32_t b);
+void ref_read_split_materials(ref *r, const ref_fresh *fresh);
+void ref_read_split_wedges(ref *r, const ref_fresh *fresh);
 void ref_read_values(ref *r);
 
 /* 6.7. */

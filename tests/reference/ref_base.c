@@ -3,13 +3,39 @@
 #include "tests/reference/ref.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+/* Joined: the vertex that fan v is one of; false if it has a position. */
+static bool read_point(ref *r, uint32_t v)
+{
+    const uint32_t points = r->point_count;
+    r->vertex[v].point = points;
+    if (v == 0 || !ref_bit(&r->in, &r->join.known)) {
+        r->point_count++;
+        return true;
+    }
+    const uint64_t back = ref_read_number(&r->in, &r->join.back);
+    REF_SEEN(fan_known);
+    ref_check(r, back < points, "6.2: a vertex that is not there");
+    const uint32_t point = r->vertex[v].point = points - 1 - (uint32_t)back;
+    uint32_t first = 0;
+    while (r->vertex[first].point != point)
+        first++;
+    r->vertex[v].at = r->vertex[v].born = r->vertex[first].at;
+    return false;
+}
 
 static uint32_t read_vertex(ref *r, ref_vec predicted)
 {
     ref_base_models *m = &r->base_models;
-    ref_check(r, r->vertex_count < r->header.level[0].vertices,
+    const ref_header *h = &r->header;
+    ref_check(r,
+              r->vertex_count <
+                  (h->joined ? h->base_fans : h->level[0].vertices),
               "6.2: too many vertices");
     const uint32_t v = ref_new_vertex(r);
+    if (h->joined && !read_point(r, v))
+        return v;
     for (int i = 0; i < 3; i++) {
         const int64_t size = (int64_t)ref_read_number(&r->in, &m->position);
         const bool minus = size > 0 && ref_bit(&r->in, &m->sign);
@@ -175,13 +201,51 @@ static void close_mesh(ref *r)
     ref_check(r, fans, "6.2: a vertex without one fan");
 }
 
+/* Fans become those of their vertices. */
+static void join_fans(ref *r)
+{
+    ref_vertex *point = calloc(r->point_count, sizeof *point);
+    bool room = true;
+    for (uint32_t p = 0; p < r->point_count; p++)
+        point[p] = (ref_vertex){ .first = REF_NONE, .parent = REF_NONE };
+    for (uint32_t h = 0; h < 3 * r->face_count; h++)
+        r->edge[h].vertex = r->vertex[r->edge[h].vertex].point;
+    for (uint32_t v = 0; v < r->vertex_count; v++) {
+        const ref_vertex *fan = &r->vertex[v];
+        ref_vertex *to = &point[fan->point];
+        if (to->first == REF_NONE) {
+            to->first = fan->first;
+            to->at = to->born = fan->at;
+        } else if (to->more < REF_FANS - 1) {
+            to->later[to->more++] = fan->first;
+        } else {
+            room = false;
+        }
+    }
+    memcpy(r->vertex, point, r->point_count * sizeof *point);
+    free(point);
+    r->vertex_count = r->point_count;
+    ref_check(r, room, "6.2: too many fans");
+    for (uint32_t h = 0; h < 3 * r->face_count; h++)
+        ref_check(r, ref_start_of(r, h) != ref_end_of(r, h),
+                  "6.2: a vertex twice in a face");
+}
+
 void ref_read_base(ref *r, const uint8_t *data, size_t size)
 {
     const ref_level *level = &r->header.level[0];
     ref_coder_start(&r->in, data, data + size);
     read_faces(r);
-    ref_check(r, r->vertex_count == level->vertices, "6.2: vertices");
+    if (r->header.joined)
+        ref_check(r,
+                  r->vertex_count == r->header.base_fans &&
+                      r->point_count == level->vertices,
+                  "6.2: fans, vertices");
+    else
+        ref_check(r, r->vertex_count == level->vertices, "6.2: vertices");
     close_mesh(r);
+    if (r->header.joined)
+        join_fans(r);
     r->base_vertices = r->vertex_count;
     r->base_faces = r->face_count;
     ref_read_base_materials(r);

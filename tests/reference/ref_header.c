@@ -33,15 +33,19 @@ static uint64_t get_up_to(ref_bytes *in, uint64_t most, const char *rule)
 static void read_modes(ref_bytes *in, ref_header *h)
 {
     const uint64_t modes = ref_get(in, 1);
-    ref_check(in->r, (modes & 3) <= 2 && modes < 32, "5.3: modes");
+    ref_check(in->r, (modes & 3) <= 2 && (modes & 40) != 40 && modes < 64,
+              "5.3: modes");
     h->profile = (int)(modes & 3);
     h->moving = modes & 4;
     h->draco = modes & 8;
     h->lossless = modes & 16;
+    h->joined = modes & 32;
     if (h->moving)
         REF_SEEN(parents_move);
     if (h->lossless)
         REF_SEEN(lossless);
+    if (h->joined)
+        REF_SEEN(joined);
 }
 
 static void read_grid(ref_bytes *in, ref_header *h)
@@ -136,8 +140,9 @@ static void read_level(ref_bytes *in, ref_header *h, int i)
                   "5.3: counts of the base");
     else
         ref_check(in->r,
-                  vertices >= 1 && faces >= vertices &&
-                      faces <= 2 * vertices && wedges >= vertices,
+                  vertices >= 1 && wedges >= vertices &&
+                      (h->joined ||
+                       (faces >= vertices && faces <= 2 * vertices)),
                   "5.3: counts of a level");
 }
 
@@ -150,7 +155,14 @@ static void check_sizes(ref *r)
     const uint64_t wedges = last->wedges - h->level[0].wedges;
     ref_check(r, h->block_splits <= splits, "5.3: block_splits");
     ref_check(r, h->block_wedges <= wedges, "5.3: block_wedges");
-    ref_check(r, h->moved_corners <= 48 * splits, "5.3: moved_corners");
+    const uint64_t faces = last->faces - h->level[0].faces;
+    ref_check(r, h->moved_corners <= 48 * splits + (h->joined ? faces : 0),
+              "5.3: moved_corners");
+    ref_check(r, h->block_faces <= faces, "5.3: block_faces");
+    ref_check(r,
+              !h->joined || (h->base_fans >= h->level[0].vertices &&
+                             h->base_fans <= 3 * h->level[0].faces),
+              "5.3: base_fans");
 }
 
 void ref_read_header(ref *r, const uint8_t *data, size_t size)
@@ -172,6 +184,10 @@ void ref_read_header(ref *r, const uint8_t *data, size_t size)
     h->block_wedges = get_up_to(&in, 1 << 30, "5.3: block_wedges");
     h->moved_corners = get_up_to(&in, 1u << 31, "5.3: moved_corners");
     h->names_size = get_up_to(&in, 1 << 20, "5.3: names_size");
+    if (h->joined) {
+        h->base_fans = get_up_to(&in, 3u << 28, "5.3: base_fans");
+        h->block_faces = get_up_to(&in, 1 << 28, "5.3: block_faces");
+    }
     if (h->lossless) {
         h->exact_size =
             get_up_to(&in, (uint64_t)1 << 48, "5.3: exact_size");

@@ -27,17 +27,13 @@ static void start_level(ref *r)
         if (!seen[v] && v > 0)
             REF_SEEN(visit_again);
         visit(r, seen, v);
-        for (; done < r->order_count; done++) {
-            const uint32_t first = r->vertex[r->order[done]].first;
-            uint32_t h = first, left;
-            do {
-                visit(r, seen, ref_end_of(r, h));
-                left = ref_left(r, h);
-                if (left == REF_NONE)
-                    visit(r, seen, ref_start_of(r, ref_prev(h)));
-                h = left;
-            } while (left != REF_NONE && left != first);
-        }
+        for (; done < r->order_count; done++)
+            for (ref_walk w = ref_walk_at(r, r->order[done]); w.h != REF_NONE;
+                 ref_walk_on(r, &w)) {
+                visit(r, seen, ref_end_of(r, w.h));
+                if (ref_left(r, w.h) == REF_NONE)
+                    visit(r, seen, ref_start_of(r, ref_prev(w.h)));
+            }
     }
     free(seen);
     r->in_level = true;
@@ -48,15 +44,17 @@ static int least(int a, int b)
     return a < b ? a : b;
 }
 
-static int flag_context(const ref *r, const ref_ring *ring)
+static int flag_context(const ref *r, const ref_ring *ring, int rings)
 {
-    const int size = ring->count + ring->open;
-    int parents = 0, kept = 0, unvisited = 0;
-    for (int i = 0; i < ring->count; i++) {
-        const int state = r->vertex[ring->vertex[i]].state;
-        parents += state == REF_PARENT || state == REF_NEWBORN;
-        kept += state == REF_KEPT;
-        unvisited += state == REF_UNVISITED;
+    int size = 0, parents = 0, kept = 0, unvisited = 0;
+    for (int k = 0; k < rings; k++) {
+        size += ring[k].count + ring[k].open;
+        for (int i = 0; i < ring[k].count; i++) {
+            const int state = r->vertex[ring[k].vertex[i]].state;
+            parents += state == REF_PARENT || state == REF_NEWBORN;
+            kept += state == REF_KEPT;
+            unvisited += state == REF_UNVISITED;
+        }
     }
     const int a = size < 4 ? 0 : least(size - 3, 7);
     return ((a * 6 + least(parents, 5)) * 5 + least(kept, 4)) * 7 +
@@ -86,11 +84,11 @@ static uint32_t prev_or_none(uint32_t h)
     return h == REF_NONE ? h : ref_prev(h);
 }
 
-static place find_place(const ref *r, uint32_t v, const ref_ring *ring,
+static place find_place(uint32_t v, uint32_t u, const ref_ring *ring,
                         ref_cut cut)
 {
-    place p = { v, r->vertex_count, REF_NONE, REF_NONE,
-                REF_NONE, REF_NONE, REF_NONE, REF_NONE, r->vertex[v].first };
+    place p = { v, u, REF_NONE, REF_NONE,
+                REF_NONE, REF_NONE, REF_NONE, REF_NONE, ring->edge[0] };
     if (cut.first != REF_GHOST_WING) {
         p.a = ring->vertex[cut.first];
         p.before_a = prev_or_none(ring_edge(ring, cut.first - 1));
@@ -104,23 +102,19 @@ static place find_place(const ref *r, uint32_t v, const ref_ring *ring,
     return p;
 }
 
-/* The faces from a to b go to u. u starts at the mean of what is around. */
+/* The faces from a to b go to u. */
 static void move_faces(ref *r, const place *p, const ref_ring *ring,
                        ref_cut cut)
 {
     const int n = ring->count;
     const int first = cut.first == REF_GHOST_WING ? 0 : cut.first;
     int span = cut.end == REF_GHOST_WING ? n - 1 - first : cut.end - first;
-    ref_vec sum = r->vertex[p->v].at;
     if (span < 0)
         span += n;
     if (span == 0)
         REF_SEEN(cut_without_faces);
-    for (int i = 0; i <= span; i++)
-        sum = ref_add(sum, r->vertex[ring->vertex[(first + i) % n]].at);
     for (int i = 0; i < span; i++)
         r->edge[ring->edge[(first + i) % n]].vertex = p->u;
-    r->vertex[p->u].at = ref_over(sum, span + 2);
 }
 
 static uint32_t add_face_a(ref *r, const place *p)
@@ -129,7 +123,7 @@ static uint32_t add_face_a(ref *r, const place *p)
     ref_join(r, f, p->before_a);
     ref_join(r, f + 1, p->behind_a);
     if (p->behind_a == REF_NONE)
-        r->vertex[p->a].first = f + 1;
+        ref_restart(r, p->a, p->before_a, f + 1);
     return f;
 }
 
@@ -139,15 +133,15 @@ static uint32_t add_face_b(ref *r, const place *p)
     ref_join(r, f + 1, p->before_b);
     ref_join(r, f + 2, p->behind_b);
     if (p->behind_b == REF_NONE)
-        r->vertex[p->b].first = f + 2;
+        ref_restart(r, p->b, p->before_b, f + 2);
     return f;
 }
 
-static void set_first(ref *r, const place *p, const ref_ring *ring,
-                      ref_cut cut, uint32_t a, uint32_t b)
+static void set_first(const place *p, const ref_ring *ring, ref_cut cut,
+                      uint32_t a, uint32_t b, uint32_t *v_first,
+                      uint32_t *u_first)
 {
-    uint32_t *u_first = &r->vertex[p->u].first;
-    uint32_t *v_first = &r->vertex[p->v].first;
+    *v_first = p->v_first;
     if (p->a != REF_NONE) {
         *u_first = a + 2;
         if (cut.first == 0 || (p->b != REF_NONE && !ring->open))
@@ -170,38 +164,82 @@ static void note_cut(const ref_ring *ring, ref_cut cut)
         REF_SEEN(cut_open);
 }
 
-static void split(ref *r, uint32_t v, const ref_ring *ring, ref_cut cut)
+void ref_cut_fan(ref *r, uint32_t v, const ref_ring *ring, ref_cut cut,
+                 ref_fresh *fresh, uint32_t *start_v)
 {
-    const ref_level *level = &r->header.level[r->levels];
+    const int i = fresh->cuts++;
+    const place p = find_place(v, fresh->u, ring, cut);
     uint32_t a = REF_NONE, b = REF_NONE;
-    const place p = find_place(r, v, ring, cut);
     note_cut(ring, cut);
-    ref_check(r, r->vertex_count < level->vertices, "6.3: vertices");
-    ref_new_vertex(r);
-    r->vertex[p.u].parent = v;
-    const uint32_t first_face = r->face_count;
     move_faces(r, &p, ring, cut);
     if (p.a != REF_NONE)
         a = add_face_a(r, &p);
     if (p.b != REF_NONE)
         b = add_face_b(r, &p);
-    ref_check(r, r->face_count <= level->faces, "6.3: faces");
     if (a != REF_NONE && b != REF_NONE)
         ref_join(r, a + 2, b);
-    set_first(r, &p, ring, cut, a, b);
-    r->vertex[v].state = REF_PARENT;
-    r->vertex[p.u].state = REF_NEWBORN;
+    set_first(&p, ring, cut, a, b, start_v, &fresh->start[i]);
+    fresh->a[i] = a;
+    fresh->b[i] = b;
+}
 
-    const size_t index = p.u - r->base_vertices;
+/* u starts at the mean of what is around, v included. */
+static void place_child(ref *r, uint32_t v, uint32_t u)
+{
+    const ref_ring ring = ref_ring_of(r, u);
+    ref_vec sum = r->vertex[v].at;
+    int count = 1;
+    for (int i = 0; i < ring.count; i++) {
+        if (ring.vertex[i] == v)
+            continue;
+        sum = ref_add(sum, r->vertex[ring.vertex[i]].at);
+        count++;
+    }
+    r->vertex[u].at = ref_over(sum, count);
+}
+
+static ref_fresh start_split(ref *r, uint32_t v)
+{
+    const ref_level *level = &r->header.level[r->levels];
+    ref_check(r, r->vertex_count < level->vertices, "6.3: vertices");
+    const ref_fresh fresh = { .u = ref_new_vertex(r),
+                              .first_face = r->face_count };
+    r->vertex[fresh.u].parent = v;
+    return fresh;
+}
+
+static void finish_split(ref *r, uint32_t v, const ref_fresh *fresh)
+{
+    const ref_level *level = &r->header.level[r->levels];
+    ref_check(r, r->face_count <= level->faces, "6.3: faces");
+    ref_check(r,
+              !r->header.joined ||
+                  r->face_count - r->block_face <= r->header.block_faces,
+              "6.3: more than block_faces");
+    place_child(r, v, fresh->u);
+    r->vertex[v].state = REF_PARENT;
+    r->vertex[fresh->u].state = REF_NEWBORN;
+
+    const size_t index = fresh->u - r->base_vertices;
     r->split = ref_grow(r, r->split, &r->split_room, index + 1,
                         sizeof *r->split);
     r->split[index] = (ref_split){ .parent = v,
-                                   .first_face = first_face,
+                                   .first_face = fresh->first_face,
                                    .face_end = r->face_count };
     if (r->header.material_count > 1)
-        ref_read_split_materials(r, a, b);
+        ref_read_split_materials(r, fresh);
     if (r->header.attribute_count > 0)
-        ref_read_split_wedges(r, p.u, a, b);
+        ref_read_split_wedges(r, fresh);
+}
+
+static void split(ref *r, uint32_t v, const ref_ring *ring, ref_cut cut)
+{
+    ref_fresh fresh = start_split(r, v);
+    uint32_t start;
+    ref_cut_fan(r, v, ring, cut, &fresh, &start);
+    r->vertex[v].first = start;
+    r->vertex[fresh.u].first = fresh.start[0];
+    finish_split(r, v, &fresh);
 }
 
 /* ---- a block ------------------------------------------------------------ */
@@ -212,17 +250,24 @@ static void read_splits(ref *r, uint64_t splits)
         ref_check(r, r->order_at < r->order_count,
                   "6.3: more splits than vertices");
         const uint32_t v = r->order[r->order_at++];
-        const ref_ring ring = ref_ring_of(r, v);
+        const ref_fans fans = ref_fans_of(r, v);
         r->vertex[v].state = REF_KEPT;
-        if (ring.large) {
+        if (fans.large) {
             REF_SEEN(visit_large_ring);
             continue;
         }
-        if (!ref_bit(&r->in, &r->flag[flag_context(r, &ring)])) {
+        const int context = flag_context(r, fans.ring, fans.count);
+        if (!ref_bit(&r->in, &r->flag[context])) {
             REF_SEEN(flag_kept);
             continue;
         }
-        split(r, v, &ring, ref_read_cut(r, v, &ring));
+        if (r->header.joined) {
+            ref_fresh fresh = start_split(r, v);
+            ref_part(r, v, &fans, &fresh);
+            finish_split(r, v, &fresh);
+        } else {
+            split(r, v, fans.ring, ref_read_cut(r, v, fans.ring));
+        }
         done++;
     }
 }

@@ -27,11 +27,63 @@ uint32_t ref_end_of(const ref *r, uint32_t h)
     return r->edge[ref_next(h)].vertex;
 }
 
-/* Stops behind the first member too many. */
+/* ---- fans --------------------------------------------------------------- */
+
+uint32_t ref_fan(const ref *r, uint32_t v, int i)
+{
+    const ref_vertex *x = &r->vertex[v];
+    if (i == 0)
+        return x->first;
+    return i <= x->more ? x->later[i - 1] : REF_NONE;
+}
+
+bool ref_add_fan(ref *r, uint32_t v, uint32_t start)
+{
+    ref_vertex *x = &r->vertex[v];
+    if (x->first == REF_NONE) {
+        x->first = start;
+        return true;
+    }
+    if (x->more == REF_FANS - 1)
+        return false;
+    x->later[x->more++] = start;
+    return true;
+}
+
+void ref_restart(ref *r, uint32_t v, uint32_t old, uint32_t now)
+{
+    ref_vertex *x = &r->vertex[v];
+    if (x->first == old)
+        x->first = now;
+    for (int i = 0; i < x->more; i++)
+        if (x->later[i] == old)
+            x->later[i] = now;
+}
+
+ref_walk ref_walk_at(const ref *r, uint32_t v)
+{
+    const uint32_t first = r->vertex[v].first;
+    return (ref_walk){ v, first, first, 0 };
+}
+
+void ref_walk_on(const ref *r, ref_walk *w)
+{
+    w->h = ref_left(r, w->h);
+    if (w->h == REF_NONE || w->h == w->start)
+        w->h = w->start = ref_fan(r, w->v, ++w->fan);
+}
+
+/* ---- rings -------------------------------------------------------------- */
+
 ref_ring ref_ring_of(const ref *r, uint32_t v)
 {
+    return ref_ring_from(r, r->vertex[v].first);
+}
+
+/* Stops behind the first member too many. */
+ref_ring ref_ring_from(const ref *r, uint32_t first)
+{
     ref_ring ring = { 0 };
-    const uint32_t first = r->vertex[v].first;
     uint32_t h = first;
     do {
         ring.edge[ring.faces++] = h;
@@ -50,13 +102,10 @@ ref_ring ref_ring_of(const ref *r, uint32_t v)
 
 uint32_t ref_degree(const ref *r, uint32_t v)
 {
-    const uint32_t first = r->vertex[v].first;
-    uint32_t n = 0, h = first;
-    do {
-        n++;
-        h = ref_left(r, h);
-    } while (h != REF_NONE && h != first);
-    return h == REF_NONE ? n + 1 : n;
+    uint32_t n = 0;
+    for (ref_walk w = ref_walk_at(r, v); w.h != REF_NONE; ref_walk_on(r, &w))
+        n += ref_left(r, w.h) == REF_NONE ? 2 : 1;
+    return n;
 }
 
 uint32_t ref_new_vertex(ref *r)

@@ -104,8 +104,12 @@ static void rename_elements(ref *r, const numbering *n, uint32_t count)
         r->edge[h].vertex = new_vertex(r, n, r->edge[h].vertex);
         r->edge[h].twin = new_edge(r, n, r->edge[h].twin);
     }
-    for (uint32_t v = 0; v < r->vertex_count; v++)
-        r->vertex[v].first = new_edge(r, n, r->vertex[v].first);
+    for (uint32_t v = 0; v < r->vertex_count; v++) {
+        ref_vertex *x = &r->vertex[v];
+        x->first = new_edge(r, n, x->first);
+        for (int i = 0; i < x->more; i++)
+            x->later[i] = new_edge(r, n, x->later[i]);
+    }
     for (uint32_t w = r->block_wedge; w < r->wedge_count; w++) {
         r->wedge[w].vertex = new_vertex(r, n, r->wedge[w].vertex);
         r->wedge[w].corner = new_edge(r, n, r->wedge[w].corner);
@@ -151,13 +155,9 @@ static void number_split(ref *r, numbering *n, counter *c, uint32_t u)
     ref_split *s = &r->split[u - r->base_vertices];
     for (uint32_t h = 3 * s->first_face; h < 3 * s->face_end; h++)
         number_wedge(r, n, c, born_with(r, h, u));
-    const uint32_t first = r->vertex[u].first;
-    uint32_t h = first;
-    do {
-        if (h / 3 < s->first_face)
-            number_wedge(r, n, c, r->edge[h].wedge);
-        h = ref_left(r, h);
-    } while (h != REF_NONE && h != first);
+    for (ref_walk w = ref_walk_at(r, u); w.h != REF_NONE; ref_walk_on(r, &w))
+        if (w.h / 3 < s->first_face)
+            number_wedge(r, n, c, r->edge[w.h].wedge);
     s->wedge_end = c->next;
 }
 
@@ -197,12 +197,9 @@ static void count_moved(ref *r)
 {
     for (uint32_t u = r->block_vertex; u < r->vertex_count; u++) {
         const ref_split *s = &r->split[u - r->base_vertices];
-        const uint32_t first = r->vertex[u].first;
-        uint32_t h = first;
-        do {
-            r->moved_corners += h / 3 < s->first_face;
-            h = ref_left(r, h);
-        } while (h != REF_NONE && h != first);
+        for (ref_walk w = ref_walk_at(r, u); w.h != REF_NONE;
+             ref_walk_on(r, &w))
+            r->moved_corners += w.h / 3 < s->first_face;
     }
     ref_check(r, r->moved_corners <= r->header.moved_corners,
               "7: moved_corners");

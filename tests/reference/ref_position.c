@@ -65,9 +65,11 @@ static void set_edges(frame *m)
     for (int i = 0; i < m->n; i++) {
         m->e[i] = ref_sub(m->r->vertex[m->ring->vertex[i]].at, m->q);
         all |= ref_or(m->e[i]);
-        if (m->ring->vertex[i] == m->y)
+        if (m->ring->vertex[i] == m->y && m->j == m->n)
             m->j = i;
     }
+    if (m->j == m->n) /* not there */
+        m->j = m->n - 1;
     m->s = 12 - ref_bits(all);
     for (int i = 0; i < m->n; i++) {
         m->e[i] = ref_vscale(m->e[i], m->s);
@@ -134,11 +136,13 @@ static ref_vec half_sum(const frame *m, int64_t a, int64_t b)
 /* How z's other neighbours lie around z. */
 static ref_vec bend_at(const frame *m, int i, int64_t k)
 {
-    const ref_ring ring = ref_ring_of(m->r, m->ring->vertex[i]);
-    ref_vec sum = { 0 };
-    for (int c = 0; c < ring.count; c++)
-        if (ring.vertex[c] != m->x)
+    const uint32_t z = m->ring->vertex[i];
+    ref_vec sum = ref_times(m->r->vertex[m->x].at, -1);
+    for (int fan = 0; ref_fan(m->r, z, fan) != REF_NONE; fan++) {
+        const ref_ring ring = ref_ring_from(m->r, ref_fan(m->r, z, fan));
+        for (int c = 0; c < ring.count; c++)
             sum = ref_add(sum, m->r->vertex[ring.vertex[c]].at);
+    }
     sum = ref_sub(sum, ref_times(m->q, k));
     sum = ref_vwithin(ref_vscale(sum, m->s), 1 << 22);
     return ref_sub(vshare(sum, k), m->e[i]);
@@ -286,7 +290,8 @@ ref_prediction ref_predict(const ref *r, uint32_t x, uint32_t y, ref_vec q,
     const ref_ring ring = ref_ring_of(r, x);
     if (ring.large)
         return predict_plain(q, kind);
-    frame m = { .r = r, .x = x, .y = y, .ring = &ring, .n = ring.count,
+    frame m = { .r = r, .x = x, .y = y, .ring = &ring,
+                .n = ring.count, .j = ring.count,
                 .q = q };
     ref_prediction p = { .kind = kind, .q = q };
     set_edges(&m);

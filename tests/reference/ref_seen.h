@@ -15,6 +15,7 @@
     X("5.2", block_goes_on)        \
     X("5.3", parents_move)         \
     X("5.3", lossless)             \
+    X("5.3", joined)               \
     X("5.3", attribute_normal)     \
     X("5.3", attribute_texture)    \
     X("5.3", attribute_colour)     \
@@ -30,6 +31,7 @@
     X("6.2", neighbour_1)          \
     X("6.2", base_vertex_number)   \
     X("6.2", candidate_far)        \
+    X("6.2", fan_known)            \
     X("6.3", visit_again)          \
     X("6.3", visit_large_ring)     \
     X("6.3", flag_kept)            \
@@ -38,6 +40,14 @@
     X("6.3", cut_ghost_first)      \
     X("6.3", cut_ghost_end)        \
     X("6.3", cut_without_faces)    \
+    X("6.3", cut_several)          \
+    X("6.3", fan_stays)            \
+    X("6.3", fan_moves)            \
+    X("6.3", lone_plain)           \
+    X("6.3", lone_turned)          \
+    X("6.3", lone_pair)            \
+    X("6.3", third_member)         \
+    X("6.3", third_far)            \
     X("6.4", cut_drift)            \
     X("6.4", cut_rank_above_3)     \
     X("6.4", cut_only_one_left)    \
@@ -57,6 +67,7 @@
     X("6.6", ordinary)             \
     X("6.6", not_ordinary)         \
     X("6.6", v_without_guess)      \
+    X("6.6", lone_like_child)      \
     X("6.6", child_seam)           \
     X("6.6", child_place)          \
     X("6.6", corner_second)        \

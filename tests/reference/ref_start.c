@@ -77,8 +77,22 @@ static void start_wedges(ref_wedge_models *m)
     ref_model_start(m->value_sign[0], 2 * REF_VALUES);
 }
 
+static void start_join(ref_join_models *m)
+{
+    ref_model_start(m->whole, 3);
+    ref_model_start(m->moves[0], 6);
+    ref_model_start(m->lone, 3);
+    ref_model_start(&m->pair, 1);
+    ref_model_start(&m->turned, 1);
+    ref_model_start(&m->far, 1);
+    ref_model_start(&m->known, 1);
+    ref_number_start(&m->member);
+    ref_number_start(&m->back);
+}
+
 void ref_models_start(ref *r)
 {
+    start_join(&r->join);
     start_base(&r->base_models);
     start_wedges(&r->wedge_models);
     load_models(r->flag, ref_FLAG, 1680);

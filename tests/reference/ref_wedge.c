@@ -46,12 +46,38 @@ static void read_over(ref *r, uint32_t g, uint32_t h)
                                        material_across(r, h, g));
 }
 
-void ref_read_split_materials(ref *r, uint32_t a, uint32_t b)
+/* The first corner of v in a face older than the split, or NONE. */
+static uint32_t older_corner(const ref *r, uint32_t v, const ref_fresh *fresh)
 {
-    if (a != REF_NONE)
-        read_over(r, a, a + 1); /* v-a, a-u */
-    if (b != REF_NONE)
-        read_over(r, b + 2, b + 1); /* b-v, u-b */
+    ref_walk w = ref_walk_at(r, v);
+    while (w.h != REF_NONE && w.h / 3 >= fresh->first_face)
+        ref_walk_on(r, &w);
+    return w.h;
+}
+
+static uint32_t older_of_both(const ref *r, const ref_fresh *fresh)
+{
+    const uint32_t corner =
+        older_corner(r, r->vertex[fresh->u].parent, fresh);
+    if (corner != REF_NONE)
+        return corner;
+    REF_SEEN(lone_like_child);
+    return older_corner(r, fresh->u, fresh);
+}
+
+void ref_read_split_materials(ref *r, const ref_fresh *fresh)
+{
+    for (int i = 0; i < fresh->cuts; i++) {
+        const uint32_t a = fresh->a[i], b = fresh->b[i];
+        if (a != REF_NONE)
+            read_over(r, a, a + 1); /* v-a, a-u */
+        if (b != REF_NONE)
+            read_over(r, b + 2, b + 1); /* b-v, u-b */
+    }
+    for (int i = 0; i < fresh->lones; i++) {
+        const uint32_t like = r->material[older_of_both(r, fresh) / 3];
+        r->material[fresh->lone[i] / 3] = read_material(r, like, like);
+    }
 }
 
 /* ---- corners ------------------------------------------------------------ */
@@ -69,18 +95,16 @@ static void new_wedge(ref *r, uint32_t corner)
 
 static void read_place(ref *r, uint32_t corner)
 {
-    const uint32_t first = r->vertex[r->edge[corner].vertex].first;
-    const uint64_t turns =
-        ref_read_number(&r->in, &r->wedge_models.pick);
-    uint32_t h = first;
+    const uint64_t on = ref_read_number(&r->in, &r->wedge_models.pick);
+    ref_walk w = ref_walk_at(r, r->edge[corner].vertex);
     REF_SEEN(place);
-    ref_check(r, turns < 4096, "6.6: place");
-    for (uint64_t i = 0; i < turns; i++) {
-        h = ref_left(r, h);
-        ref_check(r, h != REF_NONE && h != first, "6.6: place");
+    ref_check(r, on < 4096, "6.6: place");
+    for (uint64_t i = 0; i < on; i++) {
+        ref_walk_on(r, &w);
+        ref_check(r, w.h != REF_NONE, "6.6: place");
     }
-    ref_check(r, r->edge[h].wedge != REF_NONE, "6.6: a place without wedge");
-    r->edge[corner].wedge = r->edge[h].wedge;
+    ref_check(r, r->edge[w.h].wedge != REF_NONE, "6.6: a place without wedge");
+    r->edge[corner].wedge = r->edge[w.h].wedge;
 }
 
 /* Returns whether the corner got a new wedge. */
@@ -116,16 +140,15 @@ static bool read_corner(ref *r, uint32_t corner, uint32_t g, uint32_t s)
 void ref_read_base_wedges(ref *r)
 {
     for (uint32_t v = 0; v < r->vertex_count; v++) {
-        const uint32_t first = r->vertex[v].first;
-        uint32_t h = first, before = REF_NONE;
-        do {
+        uint32_t before = REF_NONE;
+        for (ref_walk w = ref_walk_at(r, v); w.h != REF_NONE;
+             ref_walk_on(r, &w)) {
             if (before == REF_NONE)
-                new_wedge(r, h);
+                new_wedge(r, w.h);
             else
-                read_corner(r, h, before, REF_NONE);
-            before = r->edge[h].wedge;
-            h = ref_left(r, h);
-        } while (h != REF_NONE && h != first);
+                read_corner(r, w.h, before, REF_NONE);
+            before = r->edge[w.h].wedge;
+        }
     }
 }
 
@@ -136,9 +159,9 @@ typedef struct other {
 } other;
 
 typedef struct change {
-    uint32_t corner[REF_ROOM], coarse[REF_ROOM]; /* of u */
+    uint32_t corner[REF_CORNERS], coarse[REF_CORNERS]; /* of u */
     int count;
-    other other[4];
+    other other[REF_CORNERS];
     int others;
     uint32_t first_wedge; /* that the split makes */
 } change;
@@ -159,16 +182,19 @@ static void add_other(change *c, uint32_t corner, uint32_t g, uint32_t s)
 }
 
 /* The corners of u, whose wedges of before go to coarse[]. */
-static void list_corners(ref *r, change *c, uint32_t u)
+static void list_corners(const ref *r, change *c, uint32_t u)
 {
-    const uint32_t first = r->vertex[u].first;
-    uint32_t h = first;
-    do {
-        c->corner[c->count] = h;
-        c->coarse[c->count++] = r->edge[h].wedge;
-        r->edge[h].wedge = REF_NONE;
-        h = ref_left(r, h);
-    } while (h != REF_NONE && h != first);
+    for (ref_walk w = ref_walk_at(r, u); w.h != REF_NONE;
+         ref_walk_on(r, &w)) {
+        c->corner[c->count] = w.h;
+        c->coarse[c->count++] = r->edge[w.h].wedge;
+    }
+}
+
+static void clear_corners(ref *r, const change *c)
+{
+    for (int i = 0; i < c->count; i++)
+        r->edge[c->corner[i]].wedge = REF_NONE;
 }
 
 static uint32_t first_coarse(const change *c)
@@ -179,9 +205,32 @@ static uint32_t first_coarse(const change *c)
     return REF_NONE;
 }
 
-/* Guesses come over the outer edges: v-a, a-u, u-b, b-v. */
-static void list_others(const ref *r, change *c, uint32_t a, uint32_t b)
+/* The first coarse wedge of u's part of a fan that was cut. */
+static uint32_t coarse_of_part(const ref *r, const ref_fresh *fresh, int i)
 {
+    uint32_t h = fresh->start[i];
+    while (h != REF_NONE && h / 3 >= fresh->first_face)
+        h = ref_left(r, h);
+    return wedge_or_none(r, h);
+}
+
+static void list_lones(const ref *r, change *c, const ref_fresh *fresh)
+{
+    for (int i = 0; i < fresh->lones; i++) {
+        const uint32_t f = fresh->lone[i];
+        const uint32_t at_v = ref_start_of(r, f) == fresh->u ? f + 1 : f;
+        const uint32_t w = ref_start_of(r, f + 2);
+        add_other(c, at_v, wedge_or_none(r, older_of_both(r, fresh)),
+                  REF_NONE);
+        add_other(c, f + 2, wedge_or_none(r, older_corner(r, w, fresh)),
+                  REF_NONE);
+    }
+}
+
+/* Guesses come over the outer edges: v-a, a-u, u-b, b-v. */
+static void list_others(const ref *r, change *c, const ref_fresh *fresh, int i)
+{
+    const uint32_t a = fresh->a[i], b = fresh->b[i];
     uint32_t va = REF_NONE, au = REF_NONE, ub = REF_NONE, bv = REF_NONE;
     if (a != REF_NONE) {
         va = r->edge[a].twin;
@@ -195,7 +244,7 @@ static void list_others(const ref *r, change *c, uint32_t a, uint32_t b)
     const uint32_t v_at_b = wedge_or_none(r, bv);
     if (v_at_a == REF_NONE && v_at_b == REF_NONE) {
         REF_SEEN(v_without_guess);
-        v_at_a = first_coarse(c);
+        v_at_a = coarse_of_part(r, fresh, i);
     }
     if (a != REF_NONE) {
         add_other(c, a, v_at_a, v_at_b);
@@ -216,10 +265,14 @@ static uint32_t only_guess(const other *o)
 
 static int ordinary_context(const change *c)
 {
-    for (int i = 1; i < c->count; i++)
-        if (c->coarse[i] != REF_NONE && c->coarse[i - 1] != REF_NONE &&
-            c->coarse[i] != c->coarse[i - 1])
+    uint32_t before = REF_NONE;
+    for (int i = 0; i < c->count; i++) {
+        if (c->coarse[i] == REF_NONE)
+            continue;
+        if (before != REF_NONE && c->coarse[i] != before)
             return 2;
+        before = c->coarse[i];
+    }
     for (int i = 0; i < c->others; i++)
         if (c->other[i].guess[1] != REF_NONE &&
             c->other[i].guess[0] != c->other[i].guess[1])
@@ -259,17 +312,15 @@ static void read_child_corners(ref *r, const change *c)
     }
 }
 
-/* The first in the vertex' ring that has one. */
+/* The first at the vertex' corners, if one has one. */
 static uint32_t first_wedge_of(const ref *r, uint32_t v, uint32_t but)
 {
-    const uint32_t first = r->vertex[v].first;
-    uint32_t h = first;
-    do {
-        const uint32_t w = r->edge[h].wedge;
-        if (w != REF_NONE && w != but)
-            return w;
-        h = ref_left(r, h);
-    } while (h != REF_NONE && h != first);
+    for (ref_walk w = ref_walk_at(r, v); w.h != REF_NONE;
+         ref_walk_on(r, &w)) {
+        const uint32_t wedge = r->edge[w.h].wedge;
+        if (wedge != REF_NONE && wedge != but)
+            return wedge;
+    }
     return REF_NONE;
 }
 
@@ -303,17 +354,21 @@ static void set_parents(ref *r, const change *c)
         if (*from != REF_NONE)
             continue;
         REF_SEEN(wedge_without_coarse);
-        *from = only_guess(&c->other[0]);
+        if (c->others > 0)
+            *from = only_guess(&c->other[0]);
         if (*from == REF_NONE)
             *from = first_coarse(c);
     }
 }
 
-void ref_read_split_wedges(ref *r, uint32_t u, uint32_t a, uint32_t b)
+void ref_read_split_wedges(ref *r, const ref_fresh *fresh)
 {
     change c = { .first_wedge = r->wedge_count };
-    list_corners(r, &c, u);
-    list_others(r, &c, a, b);
+    list_corners(r, &c, fresh->u);
+    for (int i = 0; i < fresh->cuts; i++)
+        list_others(r, &c, fresh, i);
+    list_lones(r, &c, fresh);
+    clear_corners(r, &c);
     const int context = ordinary_context(&c);
     if (!ref_bit(&r->in, &r->wedge_models.ordinary[context])) {
         REF_SEEN(ordinary);

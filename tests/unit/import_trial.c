@@ -33,7 +33,8 @@ trial import_trial_of(const double *positions, size_t vertex_count,
                 .indices = indices, .face_count = face_count },
         .config = { .position_bits = 14, .normal_bits = 10,
                     .texcoord_bits = 12, .color_bits = 8,
-                    .generic_bits = 12 },
+                    .generic_bits = 12,
+                    .topology = PMESH_TOPOLOGY_KEEP },
         .acc = { .allowed = SIZE_MAX }
     };
 }

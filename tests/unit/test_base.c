@@ -72,6 +72,7 @@ static pmesh_encoder_config stub_config(stub *s)
     config.base_faces = 30;
     config.position_bits = 12;
     config.base_coder = PMESH_BASE_DRACO;
+    config.topology = PMESH_TOPOLOGY_KEEP; /* joined bases are native */
     config.base_encoder = stub_encode;
     config.base_decoder = stub_decode;
     config.base_user = s;
@@ -146,6 +147,7 @@ TEST(draco_carries_the_base_of_every_shape)
 {
     pmesh_encoder_config config = pmesh_encoder_config_default();
     config.base_coder = PMESH_BASE_DRACO;
+    config.topology = PMESH_TOPOLOGY_KEEP;
     config.base_encoder = draco_base_encode;
     config.base_decoder = draco_base_decode;
     every_shape_comes_back(config);

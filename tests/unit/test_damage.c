@@ -74,6 +74,38 @@ static void forge_checksums(uint8_t *data, size_t size)
     }
 }
 
+/* What an engine calls, on buffers of exactly the size that is asked for. */
+static void use_all(pmesh_decoder *dec)
+{
+    const double origin[3] = { 0, 0, 9 }, direction[3] = { 0.1, 0.1, -1 };
+    const pmesh_target low = { .faces = 1 }, step = { .max_ops = 100 };
+    double a[3], b[3];
+    pmesh_changes changes;
+    pmesh_header h;
+    pmesh_hit hit;
+    pmesh_decoder_header(dec, &h);
+    pmesh_buffers out = { .indices = malloc(12 * (size_t)h.faces),
+                          .positions = malloc(12 * (size_t)h.vertices) };
+    for (uint32_t i = 0; i < h.attribute_count; i++)
+        out.attributes[i] =
+            malloc(4u * h.attributes[i].components * (size_t)h.vertices);
+    pmesh_range *groups = malloc(h.material_count * sizeof *groups);
+    CHECK(pmesh_decoder_bind(dec, &out) == PMESH_OK);
+    pmesh_decoder_refine(dec, &low, &changes);
+    while (pmesh_decoder_refine(dec, &step, &changes) == PMESH_MORE)
+        ;
+    CHECK(pmesh_decoder_copy_morph(dec, &low, out.positions, 0) == PMESH_OK);
+    CHECK(pmesh_decoder_copy_indices(dec, out.indices, 0, groups) == PMESH_OK);
+    CHECK(pmesh_decoder_bounds(dec, a, b) == PMESH_OK);
+    pmesh_decoder_raycast(dec, origin, direction, &hit);
+    pmesh_decoder_bind(dec, NULL);
+    for (uint32_t i = 0; i < h.attribute_count; i++)
+        free(out.attributes[i]);
+    free(out.indices);
+    free(out.positions);
+    free(groups);
+}
+
 static void damage_and_decode(const shape_bytes *b, uint32_t *seed)
 {
     uint8_t *copy = malloc(b->size);
@@ -103,6 +135,7 @@ static void damage_and_decode(const shape_bytes *b, uint32_t *seed)
         float *xyz = malloc(12 * (size_t)v.vertex_count);
         CHECK(pmesh_decoder_copy_positions(dec, xyz, 0) == PMESH_OK);
         free(xyz);
+        use_all(dec);
     }
     pmesh_decoder_destroy(dec);
     free(copy);

@@ -146,6 +146,45 @@ TEST(import_splits_a_bow_tie)
     import_finish(&t);
 }
 
+TEST(import_leaves_a_bow_tie_its_knot_when_fans_may_join)
+{
+    static const double xyz[] = {
+        0, 0, 0,  1, 0, 0,  1, 1, 0,  -1, 0, 0,  -1, -1, 0
+    };
+    static const uint32_t faces[] = { 0, 1, 2, 0, 3, 4 };
+    trial t = import_trial_of(xyz, 5, faces, 2);
+
+    t.config.topology = PMESH_TOPOLOGY_AUTO;
+    CHECK(import_run(&t) == PMESH_OK);
+    CHECK(t.report.joined && t.mesh.joined);
+    CHECK(t.report.cut_vertices == 0 && t.report.joined_vertices == 1);
+    CHECK(memcmp(t.mesh.vertex, faces, sizeof faces) == 0);
+    import_finish(&t);
+}
+
+TEST(import_gives_fans_beyond_the_48th_another_vertex)
+{
+    enum { FANS = 100 };
+    double xyz[1 + 2 * FANS][3] = { { 0 } };
+    uint32_t faces[FANS][3];
+
+    for (uint32_t i = 0; i < FANS; i++) {
+        for (uint32_t k = 0; k < 3; k++)
+            faces[i][k] = k == 0 ? 0 : 2 * i + k;
+        for (uint32_t k = 0; k < 2; k++) {
+            xyz[1 + 2 * i + k][0] = i + 1;
+            xyz[1 + 2 * i + k][1] = k;
+        }
+    }
+    trial t = import_trial_of(xyz[0], 1 + 2 * FANS, faces[0], FANS);
+    t.config.topology = PMESH_TOPOLOGY_JOIN;
+    CHECK(import_run(&t) == PMESH_OK);
+    CHECK(t.report.cut_vertices == 2 && t.report.joined_vertices == 1);
+    for (uint32_t i = 0; i < FANS; i++)
+        CHECK(t.mesh.vertex[3 * i] == (i < 48 ? 0 : 200 + i / 48));
+    import_finish(&t);
+}
+
 TEST(import_pairs_the_flatter_of_three_faces)
 {
     static const double xyz[] = {

@@ -1,0 +1,286 @@
+/* SPDX-License-Identifier: MIT */
+#include "encoder/enc_lod_price.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "encoder/enc_lod_place.h"
+#include "format/alloc.h"
+
+/* Decides between contractions that cost nothing: short edges first. Far above
+ * the rounding of sums, far below what can be seen. */
+#define LENGTH_TIE 1e-12
+
+/* The factor f of the camera cost. */
+#define CAMERA_FACTOR 0.01
+
+pmesh_status enc_lod_pricer_create(enc_lod *lod,
+                                   const pmesh_simplify_options *options,
+                                   const enc_lod_frame *frame,
+                                   pmesh_place placement,
+                                   const enc_lod_channels *channels,
+                                   double *value, enc_lod_pricer *out)
+{
+    *out = (enc_lod_pricer){
+        .lod = lod, .options = options, .frame = *frame, .placement = placement
+    };
+    /* Areas are to weigh as much as their roots on the whole. */
+    if (options->metric == PMESH_MEMORYLESS)
+        out->recall = options->memory / sqrt(lod->faces);
+    pmesh_status status = enc_lod_wedges_create(
+        lod, channels, options->boundary, options->seam, value, &out->wedges);
+    if (status != PMESH_OK)
+        return status;
+    out->memory =
+        pmesh_alloc(&lod->allocator, lod->vertex_count, sizeof *out->memory);
+    return out->memory ? PMESH_OK : PMESH_E_MEMORY;
+}
+
+void enc_lod_pricer_destroy(enc_lod_pricer *p)
+{
+    if (!p->lod)
+        return;
+    pmesh_release(&p->lod->allocator, p->memory, p->lod->vertex_count,
+                  sizeof *p->memory);
+    enc_lod_wedges_destroy(&p->wedges);
+    *p = (enc_lod_pricer){ 0 };
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void difference(const double a[3], const double b[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = a[i] - b[i];
+}
+
+static enc_lod_edge edge_between(const enc_lod *lod, uint32_t gone,
+                                 uint32_t kept)
+{
+    enc_lod_edge e = { .gone = gone, .kept = kept };
+
+    for (int i = 0; i < 3; i++) {
+        const double a = lod->position[gone][i], b = lod->position[kept][i];
+        e.middle[i] = 0.5 * (a + b);
+        e.half[i] = 0.5 * (a - b);
+    }
+    return e;
+}
+
+/* ---- memory -------------------------------------------------------------- */
+
+/* Weighted by the root of the area: by the area, thin limbs would count for
+ * too little, and with equal weights, flat parts of few faces. */
+void enc_lod_pricer_remember(enc_lod_pricer *p, uint32_t v)
+{
+    const enc_lod *lod = p->lod;
+    uint32_t c = lod->first_corner[v];
+
+    p->memory[v] = (enc_quadric){ .c = 0 };
+    do {
+        double n[3];
+        enc_lod_normal(lod, c, lod->position[v], n);
+        const double square = dot(n, n);
+        if (square > 0)
+            enc_quadric_add_plane(&p->memory[v], n, sqrt(0.5 * sqrt(square)));
+    } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
+}
+
+/* What both ends remember, about the middle. */
+static void sum_memory(const enc_lod_pricer *p, const enc_lod_edge *e,
+                       enc_quadric *sum)
+{
+    const double back[3] = { -e->half[0], -e->half[1], -e->half[2] };
+
+    *sum = (enc_quadric){ .c = 0 };
+    enc_quadric_add(sum, &p->memory[e->gone], e->half);
+    enc_quadric_add(sum, &p->memory[e->kept], back);
+}
+
+static void add_recalled(const enc_lod_pricer *p, const enc_quadric *memory,
+                         enc_quadric *total)
+{
+    for (int i = 0; i < 6; i++)
+        total->a[i] += p->recall * memory->a[i];
+    for (int i = 0; i < 3; i++)
+        total->b[i] += p->recall * memory->b[i];
+    total->c += p->recall * memory->c;
+}
+
+static void carry_memory(enc_lod_pricer *p, const enc_lod_offer *offer)
+{
+    double from_gone[3], from_kept[3];
+    enc_quadric sum = { .c = 0 };
+
+    difference(p->lod->position[offer->gone], offer->place, from_gone);
+    difference(p->lod->position[offer->kept], offer->place, from_kept);
+    enc_quadric_add(&sum, &p->memory[offer->gone], from_gone);
+    enc_quadric_add(&sum, &p->memory[offer->kept], from_kept);
+    p->memory[offer->kept] = sum;
+}
+
+/* ---- costs --------------------------------------------------------------- */
+
+static void to_model(const enc_lod_pricer *p, const double x[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = p->frame.origin[i] + p->frame.extent * x[i];
+}
+
+static double camera_distance(const enc_lod_pricer *p, const double x[3])
+{
+    double at[3], d[3];
+
+    to_model(p, x, at);
+    difference(at, p->options->camera, d);
+    const double far = sqrt(dot(d, d)), least = 1e-6 * p->frame.extent;
+    return far > least ? far : least;
+}
+
+static double ask_hook(const enc_lod_pricer *p, const enc_lod_edge *e,
+                       const double at[3], double value, double distance)
+{
+    const double extent = p->frame.extent, square = extent * extent;
+    double ends[2][3];
+    pmesh_simplify_pair pair = {
+        .vertices = { e->kept, e->gone },
+        .positions = { ends[0], ends[1] },
+        .quadric = value * square * square,
+        .distance = sqrt(distance) * extent,
+    };
+
+    to_model(p, p->lod->position[e->kept], ends[0]);
+    to_model(p, p->lod->position[e->gone], ends[1]);
+    to_model(p, at, pair.place);
+    const double cost = p->options->hook(p->options->user, &pair);
+    return cost >= 0 ? cost : INFINITY;
+}
+
+/* x: relative to the middle. */
+static double cost_of(const enc_lod_pricer *p, const enc_lod_edge *e,
+                      const double x[3], double value, double distance)
+{
+    const double square = dot(e->half, e->half), half = sqrt(square);
+    const double tie = LENGTH_TIE * 16 * square * square;
+    const double at[3] = { e->middle[0] + x[0], e->middle[1] + x[1],
+                           e->middle[2] + x[2] };
+
+    if (!(value < INFINITY))
+        return INFINITY;
+    switch (p->options->cost) {
+    case PMESH_COST_LENGTH:
+        return half * p->frame.extent;
+    case PMESH_COST_CAMERA:
+        return half * p->frame.extent /
+               (CAMERA_FACTOR * camera_distance(p, e->middle));
+    case PMESH_COST_QUADRIC_CAMERA: {
+        const double far = camera_distance(p, at) / p->frame.extent;
+        return (value + tie) / (far * far * far * far);
+    }
+    case PMESH_COST_CUSTOM:
+        return ask_hook(p, e, at, value, distance);
+    case PMESH_COST_QUADRIC:
+        break;
+    }
+    return value + tie;
+}
+
+/* n'x of both ends' faces, each once, is the volume that they gain. */
+static bool volume_plane(const enc_lod_pricer *p, const enc_lod_edge *e,
+                         enc_plane *keep)
+{
+    const enc_lod *lod = p->lod;
+    const double *at = lod->position[e->gone];
+    uint32_t c = lod->first_corner[e->gone];
+    double rest[3]; /* of `kept` without the faces of both */
+
+    if ((lod->lines[e->gone] | lod->lines[e->kept]) & ENC_LOD_RIM)
+        return false;
+    memcpy(rest, lod->normal[e->kept], sizeof rest);
+    do {
+        double n[3];
+        if (enc_lod_corner_of(lod, c, e->kept) == ENC_NONE)
+            continue;
+        enc_lod_normal(lod, c, at, n);
+        for (int i = 0; i < 3; i++)
+            rest[i] -= n[i];
+    } while ((c = lod->corner_next[c]) != lod->first_corner[e->gone]);
+    const double *own = lod->normal[e->gone];
+    for (int i = 0; i < 3; i++)
+        keep->n[i] = own[i] + rest[i];
+    keep->offset = dot(own, e->half) - dot(rest, e->half);
+    return true;
+}
+
+/* The offer of letting `gone` go; with values only if it is to be taken. */
+static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
+                                bool full)
+{
+    const enc_lod_edge e = edge_between(p->lod, gone, kept);
+    enc_lod_offer offer = { .gone = gone, .kept = kept };
+    double x[3] = { -e.half[0], -e.half[1], -e.half[2] };
+    enc_quadric memory;
+
+    enc_lod_gather(&p->wedges, gone, kept);
+    sum_memory(p, &e, &memory);
+    if (p->placement == PMESH_PLACE_ENDPOINT) {
+        offer.quadric = enc_lod_onto_kept(&p->wedges, &e, p->break_seams) +
+                        p->recall * enc_quadric_value(&memory, x);
+        memcpy(offer.place, p->lod->position[kept], sizeof offer.place);
+        if (full && offer.quadric < INFINITY)
+            enc_lod_choose(&p->wedges);
+    } else {
+        enc_quadric total;
+        enc_plane keep;
+        enc_lod_sum(&p->wedges, &e, &total);
+        add_recalled(p, &memory, &total);
+        const bool held =
+            p->placement == PMESH_PLACE_OPTIMAL && volume_plane(p, &e, &keep);
+        enc_lod_place(p->placement, &total, e.half, held ? &keep : NULL, x);
+        offer.quadric = enc_quadric_value(&total, x);
+        for (int i = 0; i < 3; i++)
+            offer.place[i] = e.middle[i] + x[i];
+        if (full && enc_lod_stride(&p->wedges) > 0)
+            enc_lod_solve(&p->wedges, &e, x);
+    }
+    if (memory.weight > 0)
+        offer.distance = enc_quadric_value(&memory, x) / memory.weight;
+    offer.cost = cost_of(p, &e, x, offer.quadric, offer.distance);
+    return offer;
+}
+
+static bool directed(const enc_lod_pricer *p)
+{
+    return p->placement == PMESH_PLACE_ENDPOINT;
+}
+
+double enc_lod_pricer_cost(enc_lod_pricer *p, uint32_t u, uint32_t v, bool turn)
+{
+    const double forth = make_offer(p, u, v, false).cost;
+
+    if (!directed(p))
+        return forth;
+    const double back = make_offer(p, v, u, false).cost;
+    return (back < forth) != turn ? back : forth;
+}
+
+enc_lod_offer enc_lod_pricer_offer(enc_lod_pricer *p, uint32_t u, uint32_t v,
+                                   bool turn)
+{
+    bool back = turn;
+
+    if (directed(p))
+        back = turn != (make_offer(p, v, u, false).cost <
+                        make_offer(p, u, v, false).cost);
+    return back ? make_offer(p, v, u, true) : make_offer(p, u, v, true);
+}
+
+void enc_lod_pricer_move(enc_lod_pricer *p, const enc_lod_offer *offer)
+{
+    carry_memory(p, offer);
+    enc_lod_merge(&p->wedges, offer->gone, offer->kept, offer->place);
+    memcpy(p->lod->position[offer->kept], offer->place, sizeof offer->place);
+}

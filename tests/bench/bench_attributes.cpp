@@ -1,0 +1,670 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * bench_attributes - what simplification does to attributes.
+ *
+ *   bench_attributes MODEL DIR PERCENT...
+ *
+ * MODEL is a mesh file with attributes, or "gouraud": a sphere with smooth and
+ * with sharp colours. Simplified to each percentage of the faces by
+ *
+ *   joint           pmesh_simplify_mesh(), attributes in the quadrics
+ *   geometry        the same without: attributes are interpolated on the edges
+ *   joint-subset, geometry-subset   both onto vertices of the input
+ *   meshopt         meshopt_simplifyWithAttributes of the package MESHOPT_JS
+ *                   names (a path to meshopt_simplifier.js; needs node), with
+ *                   the same weights, by way of files in DIR
+ *   meshopt-update  meshopt_simplifyWithUpdate, which moves vertices
+ *
+ * Writes a line of CSV each:
+ *
+ *   model,tool,percent,target,faces,rms,normal,texcoord,color,psnr,flips,open
+ *
+ * rms is the two-sided distance by the diagonal; the attributes' the root mean
+ * square of the difference at closest points, both ways, of unit vectors and of
+ * values (texture coordinates: by the largest extent of theirs). psnr compares
+ * drawings from six sides: a wavy texture over the coordinates, colours, light
+ * by normals. flips: faces whose texture coordinates run the other way than
+ * those of the closest face of the original. open: edges without two faces,
+ * with positions joined.
+ */
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "encoder/pmesh_simplify.h"
+extern "C" {
+#include "tools/corners.h"
+#include "tools/load.h"
+#include "tools/surface.h"
+}
+
+namespace
+{
+
+constexpr std::size_t samples = 100000;
+constexpr int picture = 384; /* pixels */
+using Vec = std::array<double, 3>;
+
+const struct {
+    pmesh_attribute_kind kind;
+    float weight;
+} weights[] = { { PMESH_NORMAL, 0.01f },
+                { PMESH_TEXCOORD, 0.1f },
+                { PMESH_COLOR, 0.03f },
+                { PMESH_GENERIC, 0.03f } };
+
+float weight_of(pmesh_attribute_kind kind)
+{
+    static const char *const names[] = { "W_NORMAL", "W_UV", "W_COLOR", "W" };
+    const char *text = std::getenv(names[kind]);
+    return text ? static_cast<float>(std::atof(text)) : weights[kind].weight;
+}
+
+struct Channel {
+    pmesh_attribute_kind kind;
+    std::size_t components, offset;
+};
+
+/* One index per corner; rows of attribute values. */
+struct Mesh {
+    std::vector<Channel> channels;
+    std::size_t width = 0;
+    std::vector<double> xyz;
+    std::vector<float> rows;
+    std::vector<std::uint32_t> tri;
+
+    std::size_t faces() const
+    {
+        return tri.size() / 3;
+    }
+    std::size_t points() const
+    {
+        return xyz.size() / 3;
+    }
+    void add(pmesh_attribute_kind kind, std::size_t components)
+    {
+        channels.push_back({ kind, components, width });
+        width += components;
+    }
+};
+
+Mesh read_mesh(const std::string &path)
+{
+    asset in;
+    asset_error error;
+    corners split;
+    if (load_mesh(path.c_str(), &in, &error) != 0)
+        throw std::runtime_error(path + ": " + error.what);
+    if (!corners_unify(&in, &split))
+        throw std::bad_alloc();
+    Mesh mesh;
+    for (std::size_t i = 0; i < in.attribute_count; i++)
+        mesh.add(in.attributes[i].kind, in.attributes[i].components);
+    for (std::size_t p = 0; p < split.count; p++) {
+        const std::size_t corner = split.first[p];
+        const double *at = in.positions + 3 * std::size_t{ in.indices[corner] };
+        mesh.xyz.insert(mesh.xyz.end(), at, at + 3);
+        for (std::size_t i = 0; i < in.attribute_count; i++) {
+            const float *v = corners_values(&in, &in.attributes[i], corner);
+            mesh.rows.insert(mesh.rows.end(), v,
+                             v + in.attributes[i].components);
+        }
+    }
+    mesh.tri.assign(split.points, split.points + 3 * in.face_count);
+    corners_free(&split);
+    asset_free(&in);
+    return mesh;
+}
+
+Mesh gouraud()
+{
+    const std::uint32_t w = 200, h = 100;
+    const double pi = std::acos(-1.0);
+    Mesh mesh;
+    mesh.add(PMESH_COLOR, 3);
+    for (std::uint32_t j = 0; j <= h; j++)
+        for (std::uint32_t i = 0; i < w; i++) {
+            const double u = 2 * pi * i / w, v = pi * j / h;
+            const double p[3] = { std::sin(v) * std::cos(u),
+                                  std::sin(v) * std::sin(u), std::cos(v) };
+            mesh.xyz.insert(mesh.xyz.end(), p, p + 3);
+            const double spot = std::sin(5 * p[0]) * std::sin(5 * p[1]) > 0.3;
+            mesh.rows.push_back(static_cast<float>(0.5 + 0.5 * p[2]));
+            mesh.rows.push_back(static_cast<float>(spot));
+            mesh.rows.push_back(
+                static_cast<float>(0.5 + 0.4 * std::sin(9 * p[0])));
+        }
+    for (std::uint32_t j = 0; j < h; j++)
+        for (std::uint32_t i = 0; i < w; i++) {
+            const std::uint32_t a = j * w + i, b = j * w + (i + 1) % w;
+            for (std::uint32_t c : { a, a + w, b, b, a + w, b + w })
+                mesh.tri.push_back(c);
+        }
+    return mesh;
+}
+
+/* ---- simplification ------------------------------------------------------ */
+
+Mesh ours(const Mesh &in, std::size_t target, bool joint, bool subset)
+{
+    Mesh out = in;
+    std::vector<std::vector<float>> own;
+    std::vector<pmesh_simplify_attribute> attributes;
+    pmesh_simplify_output to = {};
+    for (const Channel &c : in.channels) {
+        own.emplace_back();
+        for (std::size_t p = 0; p < in.points(); p++)
+            for (std::size_t k = 0; k < c.components; k++)
+                own.back().push_back(in.rows[p * in.width + c.offset + k]);
+    }
+    for (std::size_t i = 0; i < own.size(); i++) {
+        const float weight = joint ? weight_of(in.channels[i].kind) : 0;
+        attributes.push_back(
+            { in.channels[i].kind,
+              static_cast<std::uint8_t>(in.channels[i].components),
+              own[i].data(),
+              0,
+              { weight, weight, weight, weight } });
+        to.attribute_values[i] = own[i].data();
+    }
+    const std::vector<std::vector<float>> before = own;
+    for (std::size_t i = 0; i < own.size(); i++)
+        attributes[i].values = before[i].data();
+    pmesh_simplify_input mesh = {};
+    mesh.indices = in.tri.data();
+    mesh.face_count = in.faces();
+    mesh.vertex_count = in.points();
+    mesh.doubles = in.xyz.data();
+    mesh.attributes = attributes.data();
+    mesh.attribute_count = attributes.size();
+    pmesh_simplify_options options = pmesh_simplify_options_default();
+    options.faces = target;
+    if (subset)
+        options.placement = PMESH_PLACE_ENDPOINT;
+    to.indices = out.tri.data();
+    to.positions = out.xyz.data();
+    const pmesh_status status = pmesh_simplify_mesh(&mesh, &options, &to);
+    if (status != PMESH_OK)
+        throw std::runtime_error(pmesh_status_text(status));
+    out.tri.resize(3 * to.face_count);
+    for (std::size_t i = 0; i < own.size(); i++) {
+        const Channel &c = in.channels[i];
+        for (std::size_t p = 0; p < in.points(); p++)
+            for (std::size_t k = 0; k < c.components; k++)
+                out.rows[p * in.width + c.offset + k] =
+                    own[i][p * c.components + k];
+    }
+    return out;
+}
+
+template <typename T>
+void dump(const std::string &path, const std::vector<T> &data)
+{
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char *>(data.data()),
+               static_cast<std::streamsize>(data.size() * sizeof(T)));
+    if (!file.flush())
+        throw std::runtime_error(path + ": cannot be written");
+}
+
+template <typename T> std::vector<T> slurp(const std::string &path)
+{
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    std::vector<T> data(static_cast<std::size_t>(file.tellg()) / sizeof(T));
+    file.seekg(0);
+    file.read(reinterpret_cast<char *>(data.data()),
+              static_cast<std::streamsize>(data.size() * sizeof(T)));
+    if (!file)
+        throw std::runtime_error(path + ": cannot be read");
+    return data;
+}
+
+Mesh meshopt(const Mesh &in, std::size_t target, const std::string &dir,
+             bool update)
+{
+    std::string list;
+    for (const Channel &c : in.channels)
+        for (std::size_t k = 0; k < c.components; k++)
+            list +=
+                (list.empty() ? "" : ",") + std::to_string(weight_of(c.kind));
+    dump(dir + "/indices", in.tri);
+    dump(dir + "/positions", std::vector<float>(in.xyz.begin(), in.xyz.end()));
+    dump(dir + "/attributes", in.rows);
+    const std::string command =
+        "node tests/bench/attributes.mjs \"" + dir + "\" " + list + " " +
+        std::to_string(3 * target) + (update ? " update" : "");
+    if (std::system(command.c_str()) != 0)
+        throw std::runtime_error("node failed");
+    Mesh out = in;
+    out.tri = slurp<std::uint32_t>(dir + "/indices");
+    if (update) {
+        const std::vector<float> xyz = slurp<float>(dir + "/positions");
+        out.xyz.assign(xyz.begin(), xyz.end());
+        out.rows = slurp<float>(dir + "/attributes");
+    }
+    return out;
+}
+
+/* ---- distances ----------------------------------------------------------- */
+
+Vec point(const Mesh &mesh, std::uint32_t p)
+{
+    return { mesh.xyz[3 * std::size_t{ p }], mesh.xyz[3 * std::size_t{ p } + 1],
+             mesh.xyz[3 * std::size_t{ p } + 2] };
+}
+
+Vec minus(const Vec &a, const Vec &b)
+{
+    return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+}
+
+double dot(const Vec &a, const Vec &b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Vec cross(const Vec &a, const Vec &b)
+{
+    return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+             a[0] * b[1] - a[1] * b[0] };
+}
+
+/* Weights of the corners at the point of the triangle closest to p: by the
+ * regions of corners, edges and inside. */
+Vec closest(const Vec &p, const Vec &a, const Vec &b, const Vec &c)
+{
+    const Vec ab = minus(b, a), ac = minus(c, a), n = cross(ab, ac);
+    const double square = dot(n, n);
+    if (square > 0) {
+        const Vec ap = minus(p, a);
+        const double v = dot(cross(ap, ac), n) / square;
+        const double w = dot(cross(ab, ap), n) / square;
+        if (v >= 0 && w >= 0 && v + w <= 1)
+            return { 1 - v - w, v, w };
+    }
+    const Vec corner[3] = { a, b, c };
+    Vec best = { 1, 0, 0 };
+    double least = HUGE_VAL;
+    for (std::size_t k = 0; k < 3; k++) {
+        const std::size_t l = (k + 1) % 3;
+        const Vec way = minus(corner[l], corner[k]);
+        const double length = dot(way, way);
+        double t = length > 0 ? dot(minus(p, corner[k]), way) / length : 0;
+        t = std::clamp(t, 0.0, 1.0);
+        Vec off = minus(p, corner[k]);
+        for (std::size_t i = 0; i < 3; i++)
+            off[i] -= t * way[i];
+        if (dot(off, off) < least) {
+            least = dot(off, off);
+            best = { 0, 0, 0 };
+            best[k] = 1 - t;
+            best[l] = t;
+        }
+    }
+    return best;
+}
+
+/* A mesh with its search tree. */
+struct Searchable {
+    const Mesh &mesh;
+    surface tree = {};
+    Searchable(const Mesh &m, const surface_frame &frame) : mesh(m)
+    {
+        const asset a = as_asset(m);
+        if (!surface_build(&tree, &a, &frame))
+            throw std::bad_alloc();
+    }
+    ~Searchable()
+    {
+        surface_free(&tree);
+    }
+    static asset as_asset(const Mesh &m)
+    {
+        asset a = {};
+        a.positions = const_cast<double *>(m.xyz.data());
+        a.vertex_count = m.points();
+        a.indices = const_cast<std::uint32_t *>(m.tri.data());
+        a.face_count = m.faces();
+        return a;
+    }
+    Vec local(std::uint32_t p) const
+    {
+        const double *q = tree.points + 3 * std::size_t{ p };
+        return { q[0], q[1], q[2] };
+    }
+};
+
+std::vector<double> blend(const Mesh &mesh, const std::uint32_t corner[3],
+                          const Vec &weight)
+{
+    std::vector<double> row(mesh.width, 0.0);
+    for (std::size_t k = 0; k < 3; k++)
+        for (std::size_t i = 0; i < mesh.width; i++)
+            row[i] += weight[k] * static_cast<double>(
+                                      mesh.rows[corner[k] * mesh.width + i]);
+    return row;
+}
+
+void normalise(double *v)
+{
+    const double n = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3 && n > 0; i++)
+        v[i] /= n;
+}
+
+struct Sums {
+    double distance = 0, kind[4] = { 0, 0, 0, 0 };
+    std::size_t count = 0;
+};
+
+void compare_rows(const Mesh &mesh, std::vector<double> a,
+                  std::vector<double> b, Sums *sums)
+{
+    for (const Channel &c : mesh.channels) {
+        if (c.kind == PMESH_NORMAL) {
+            normalise(&a[c.offset]);
+            normalise(&b[c.offset]);
+        }
+        for (std::size_t k = 0; k < c.components; k++) {
+            const double d = a[c.offset + k] - b[c.offset + k];
+            sums->kind[c.kind] += d * d;
+        }
+    }
+}
+
+void one_way(const Searchable &from, const Searchable &to, Sums *sums)
+{
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> unit(0, 1);
+    std::vector<double> area;
+    double total = 0;
+    const std::size_t faces = from.tree.face_count;
+    auto corner = [](const Searchable &s, std::size_t f) {
+        return s.tree.corners + 3 * f;
+    };
+    for (std::size_t f = 0; f < faces; f++) {
+        const std::uint32_t *c = corner(from, f);
+        const Vec a = from.local(c[0]);
+        const Vec n =
+            cross(minus(from.local(c[1]), a), minus(from.local(c[2]), a));
+        total += std::sqrt(dot(n, n));
+        area.push_back(total);
+    }
+    std::uint32_t hint = 0;
+    for (std::size_t i = 0; i < samples; i++) {
+        const double at = total * (static_cast<double>(i) + unit(random)) /
+                          static_cast<double>(samples);
+        std::size_t f = static_cast<std::size_t>(
+            std::lower_bound(area.begin(), area.end(), at) - area.begin());
+        f = std::min(f, faces - 1);
+        const double r = std::sqrt(unit(random)), u = unit(random);
+        const Vec weight = { 1 - r, r * (1 - u), r * u };
+        const std::uint32_t *c = corner(from, f);
+        Vec p = { 0, 0, 0 };
+        for (std::size_t k = 0; k < 3; k++)
+            for (std::size_t j = 0; j < 3; j++)
+                p[j] += weight[k] * from.local(c[k])[j];
+        sums->distance += surface_closest(&to.tree, p.data(), &hint);
+        const std::uint32_t *d = corner(to, hint);
+        const Vec other =
+            closest(p, to.local(d[0]), to.local(d[1]), to.local(d[2]));
+        compare_rows(from.mesh, blend(from.mesh, c, weight),
+                     blend(to.mesh, d, other), sums);
+        sums->count++;
+    }
+}
+
+const Channel *find(const Mesh &mesh, pmesh_attribute_kind kind)
+{
+    for (const Channel &c : mesh.channels)
+        if (c.kind == kind)
+            return &c;
+    return nullptr;
+}
+
+double uv_area(const Mesh &mesh, const std::uint32_t corner[3])
+{
+    const Channel *c = find(mesh, PMESH_TEXCOORD);
+    double x[3], y[3];
+    for (int k = 0; k < 3; k++) {
+        x[k] =
+            static_cast<double>(mesh.rows[corner[k] * mesh.width + c->offset]);
+        y[k] = static_cast<double>(
+            mesh.rows[corner[k] * mesh.width + c->offset + 1]);
+    }
+    return (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+}
+
+std::size_t count_flips(const Searchable &original, const Searchable &result)
+{
+    std::size_t flips = 0;
+    std::uint32_t hint = 0;
+    if (!find(original.mesh, PMESH_TEXCOORD))
+        return 0;
+    for (std::size_t f = 0; f < result.tree.face_count; f++) {
+        const std::uint32_t *c = result.tree.corners + 3 * f;
+        Vec p = { 0, 0, 0 };
+        for (std::size_t k = 0; k < 3; k++)
+            for (std::size_t j = 0; j < 3; j++)
+                p[j] += result.local(c[k])[j] / 3;
+        surface_closest(&original.tree, p.data(), &hint);
+        flips += uv_area(result.mesh, c) *
+                     uv_area(original.mesh,
+                             original.tree.corners + 3 * std::size_t{ hint }) <
+                 0;
+    }
+    return flips;
+}
+
+std::size_t count_open(const Mesh &mesh)
+{
+    std::map<Vec, std::uint32_t> number;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+    auto at = [&](std::size_t c) {
+        return number
+            .try_emplace(point(mesh, mesh.tri[c]),
+                         static_cast<std::uint32_t>(number.size()))
+            .first->second;
+    };
+    for (std::size_t c = 0; c < mesh.tri.size(); c++) {
+        const std::uint32_t a = at(c), b = at(c % 3 == 2 ? c - 2 : c + 1);
+        edges[std::minmax(a, b)]++;
+    }
+    return static_cast<std::size_t>(
+        std::count_if(edges.begin(), edges.end(),
+                      [](const auto &e) { return e.second != 2; }));
+}
+
+/* ---- drawings ------------------------------------------------------------ */
+
+using Image = std::vector<std::array<float, 3>>;
+
+std::array<float, 3> shade(const Mesh &mesh, std::vector<double> row,
+                           std::size_t axis, double sign)
+{
+    double light = 1;
+    std::array<double, 3> color = { 0.8, 0.8, 0.8 };
+    for (const Channel &c : mesh.channels) {
+        if (c.kind == PMESH_NORMAL) {
+            normalise(&row[c.offset]);
+            light = 0.25 + 0.75 * std::max(0.0, sign * row[c.offset + axis]);
+        } else if (c.kind == PMESH_COLOR) {
+            for (std::size_t k = 0; k < 3; k++)
+                color[k] = std::clamp(row[c.offset + k], 0.0, 1.0);
+        } else if (c.kind == PMESH_TEXCOORD) {
+            const double turn = 2 * std::acos(-1.0) * 8;
+            color = { 0.5 + 0.5 * std::sin(turn * row[c.offset]),
+                      0.5 + 0.5 * std::sin(turn * row[c.offset + 1]), 0.5 };
+        }
+    }
+    return { static_cast<float>(light * color[0]),
+             static_cast<float>(light * color[1]),
+             static_cast<float>(light * color[2]) };
+}
+
+Image draw(const Searchable &s, std::size_t axis, double sign)
+{
+    const std::size_t ax = (axis + 1) % 3, ay = (axis + 2) % 3;
+    Image image(picture * picture, { -1, -1, -1 });
+    std::vector<double> depth(image.size(), -HUGE_VAL);
+    for (std::size_t f = 0; f < s.tree.face_count; f++) {
+        const std::uint32_t *c = s.tree.corners + 3 * f;
+        double x[3], y[3], z[3];
+        for (std::size_t k = 0; k < 3; k++) {
+            const Vec p = s.local(c[k]);
+            x[k] = (p[ax] + 1) * picture / 2;
+            y[k] = (p[ay] + 1) * picture / 2;
+            z[k] = sign * p[axis];
+        }
+        const double area =
+            (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+        if (!(std::fabs(area) > 0))
+            continue;
+        auto low = [](const double v[3]) {
+            return std::max(0,
+                            static_cast<int>(std::min({ v[0], v[1], v[2] })));
+        };
+        auto high = [](const double v[3]) {
+            return std::min(picture - 1,
+                            static_cast<int>(std::max({ v[0], v[1], v[2] })));
+        };
+        for (int py = low(y); py <= high(y); py++)
+            for (int px = low(x); px <= high(x); px++) {
+                const double qx = px + 0.5, qy = py + 0.5;
+                Vec w;
+                for (std::size_t k = 0; k < 3; k++) {
+                    const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+                    w[k] = ((x[l] - qx) * (y[m] - qy) -
+                            (x[m] - qx) * (y[l] - qy)) /
+                           area;
+                }
+                if (w[0] < 0 || w[1] < 0 || w[2] < 0)
+                    continue;
+                const double d = w[0] * z[0] + w[1] * z[1] + w[2] * z[2];
+                const auto at = static_cast<std::size_t>(py * picture + px);
+                if (d <= depth[at])
+                    continue;
+                depth[at] = d;
+                image[at] = shade(s.mesh, blend(s.mesh, c, w), axis, sign);
+            }
+    }
+    return image;
+}
+
+double psnr(const std::vector<Image> &a, const Searchable &result)
+{
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t view = 0; view < 6; view++) {
+        const Image b = draw(result, view / 2, view % 2 ? 1 : -1);
+        for (std::size_t i = 0; i < b.size(); i++) {
+            if (a[view][i][0] < 0 && b[i][0] < 0)
+                continue; /* background in both */
+            for (std::size_t k = 0; k < 3; k++) {
+                const double d =
+                    std::max(0.0, static_cast<double>(a[view][i][k])) -
+                    std::max(0.0, static_cast<double>(b[i][k]));
+                sum += d * d;
+                count++;
+            }
+        }
+    }
+    return -10 * std::log10(sum / static_cast<double>(count));
+}
+
+/* ---- all ----------------------------------------------------------------- */
+
+double uv_extent(const Mesh &mesh)
+{
+    const Channel *c = find(mesh, PMESH_TEXCOORD);
+    double extent = 0;
+    for (std::size_t k = 0; c && k < 2; k++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (std::size_t p = 0; p < mesh.points(); p++) {
+            const double v =
+                static_cast<double>(mesh.rows[p * mesh.width + c->offset + k]);
+            low = std::min(low, v);
+            high = std::max(high, v);
+        }
+        extent = std::max(extent, high - low);
+    }
+    return extent > 0 ? extent : 1;
+}
+
+void run(const std::string &model, const std::string &dir, int count,
+         char **percents)
+{
+    const Mesh in = model == "gouraud" ? gouraud() : read_mesh(model);
+    const asset whole = Searchable::as_asset(in);
+    const asset *list[] = { &whole };
+    surface_frame frame;
+    if (!surface_frame_of(list, 1, &frame))
+        throw std::runtime_error("nothing to measure");
+    const Searchable original(in, frame);
+    std::vector<Image> images;
+    for (std::size_t view = 0; view < 6; view++)
+        images.push_back(draw(original, view / 2, view % 2 ? 1 : -1));
+    std::vector<std::string> tools = { "joint", "geometry", "joint-subset",
+                                       "geometry-subset" };
+    if (std::getenv("MESHOPT_JS")) {
+        tools.push_back("meshopt");
+        tools.push_back("meshopt-update");
+    }
+    std::string name = model.substr(model.rfind('/') + 1);
+    name = name.substr(0, name.rfind('.'));
+    for (int i = 0; i < count; i++) {
+        const auto target = static_cast<std::size_t>(std::lround(
+            static_cast<double>(in.faces()) * std::atof(percents[i]) / 100));
+        for (const std::string &tool : tools) {
+            const Mesh out =
+                tool.compare(0, 7, "meshopt") == 0
+                    ? meshopt(in, target, dir, tool != "meshopt")
+                    : ours(in, target, tool.compare(0, 5, "joint") == 0,
+                           tool.find("subset") != std::string::npos);
+            const Searchable result(out, frame);
+            Sums sums;
+            one_way(original, result, &sums);
+            one_way(result, original, &sums);
+            auto root = [&](double sum) {
+                return std::sqrt(sum / static_cast<double>(sums.count));
+            };
+            std::printf("%s,%s,%s,%zu,%zu,%.4g,%.4g,%.4g,%.4g,%.2f,%zu,%zu\n",
+                        name.c_str(), tool.c_str(), percents[i], target,
+                        out.faces(),
+                        root(sums.distance) / original.tree.diagonal,
+                        root(sums.kind[PMESH_NORMAL]),
+                        root(sums.kind[PMESH_TEXCOORD]) / uv_extent(in),
+                        root(sums.kind[PMESH_COLOR]), psnr(images, result),
+                        count_flips(original, result), count_open(out));
+            std::fflush(stdout);
+        }
+    }
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+    if (argc < 4) {
+        std::cerr << "usage: bench_attributes MODEL DIR PERCENT...\n";
+        return 2;
+    }
+    try {
+        run(argv[1], argv[2], argc - 3, argv + 3);
+    } catch (const std::exception &e) {
+        std::cerr << "bench_attributes: " << e.what() << '\n';
+        return 1;
+    }
+    return 0;
+}

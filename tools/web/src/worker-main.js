@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+// What the worker of pmesh/worker runs.
+import { serve } from "./remote.js";
+
+serve(globalThis);
