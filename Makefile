@@ -172,6 +172,17 @@ check-reference:
 	@PMESH=$(B)/pmesh FILES=10000 MENDED=2000 DAMAGED=500 \
 	  tests/reference/run.sh
 
+## check-gltf: scenes of tests/scene by Khronos' glTF validator (npm)
+check-gltf:
+	+@$(submake) $(B)/pmesh
+	@cd tests/scene && npm install --silent --no-save --prefix \
+	  $(CURDIR)/build/gltf gltf-validator@2.0.0-dev.3.10 \
+	  @gltf-transform/cli@4 >/dev/null
+	@PMESH=$(CURDIR)/$(B)/pmesh NODE_PATH=$(CURDIR)/build/gltf/node_modules \
+	  VALIDATE="node tests/scene/validate.js" \
+	  TRANSFORM=$(CURDIR)/build/gltf/node_modules/.bin/gltf-transform \
+	  tests/scene/run.sh
+
 ## golden: write tests/golden anew; only for another version of the format
 golden: $(golden)
 	$(B)/golden_bake tests/golden
@@ -185,6 +196,7 @@ bench: bench-all
 ## bench-quality: distance at equal faces, against CGAL and meshoptimizer
 ## bench-decode: time to decode, against Draco
 ## bench-lossless: cost of exact positions
+## bench-skin: distance of skinned levels in five poses of an animation
 ## bench-attributes: attributes of simplified meshes, against meshoptimizer
 ## bench-refine: time and uploads of moving among decoded splits
 ## bench-web: time to decode in a browser, against Draco and native code
@@ -216,7 +228,8 @@ cross-deps:
 	@tests/install-deps.sh cross
 
 headers := format/pmesh.h encoder/pmesh_encode.h encoder/pmesh_simplify.h \
-  decoder/pmesh_decode.h decoder/pmesh_plan.h
+  encoder/pmesh_scene_encode.h decoder/pmesh_decode.h decoder/pmesh_plan.h \
+  decoder/pmesh_scene.h
 lib := $(DESTDIR)$(LIBDIR)
 include := $(DESTDIR)$(PREFIX)/include
 bin := $(DESTDIR)$(PREFIX)/bin
@@ -239,7 +252,7 @@ install: all
 	if [ -e build/web/viewer.html ]; then \
 	  install -m 644 build/web/viewer.html $(share); \
 	else echo "no page for pmesh view: 'make viewer' makes it"; fi
-	for h in $(headers); do sed 's|#include "format/|#include "|' $$h \
+	for h in $(headers); do sed 's|#include "[a-z]*/|#include "|' $$h \
 	  >$(include)/$${h##*/}; done
 	sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|' \
 	  -e 's|@VERSION@|$(version)|' tools/pmesh.pc.in >$(lib)/pkgconfig/pmesh.pc
@@ -261,7 +274,7 @@ help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
-.PHONY: check-cross check-reference golden deps bench-deps cross-deps web-deps
+.PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps web-deps
 .PHONY: check-web install
 .PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

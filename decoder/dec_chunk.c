@@ -36,6 +36,9 @@ pmesh_status dec_chunk_begin(pmesh_decoder *dec)
                    ? PMESH_OK
                    : corrupt(dec, "SPEC 5.3: the header is too large");
     }
+    if (!dec->has_header && type == PMESH_CHUNK_SCENE)
+        return dec_fail(dec, PMESH_E_UNSUPPORTED,
+                        "SPEC 11.1: a scene of meshes: see pmesh_scene.h");
     if (!dec->has_header)
         return corrupt(dec, "SPEC 5.2: the first chunk is not the header");
     if (dec->skipping)

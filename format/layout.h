@@ -24,6 +24,8 @@
 #define PMESH_CHUNK_END 5
 #define PMESH_CHUNK_NAMES 6
 #define PMESH_CHUNK_POSITIONS 7  /* exact ones, behind the last level */
+#define PMESH_CHUNK_SCENE 8 /* the header of a scene */
+#define PMESH_CHUNK_PART 9  /* of a scene: bytes of one of its parts */
 #define PMESH_CHUNK_SKIPPABLE 0x80
 #define PMESH_CRC_SIZE 4
 
@@ -61,5 +63,10 @@
 
 /* 6.6 A wedge that is used again lies this close in its vertex' ring. */
 #define PMESH_MAX_PLACE 4096
+
+/* 11 Scenes. The header grows with the number of parts. */
+#define PMESH_SCENE_VERSION 0
+#define PMESH_MAX_SCENE_HEADER (1u << 22)
+#define PMESH_MAX_SCENE_PARTS 65536 /* meshes; and as many resources */
 
 #endif

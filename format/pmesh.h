@@ -122,6 +122,14 @@ typedef struct pmesh_level {
                                last (SPEC 7.1) */
 } pmesh_level;
 
+/* The same of a scene (pmesh_scene.h): what is there once `bytes` have come. */
+typedef struct pmesh_scene_level {
+    uint64_t bytes;    /* from the start of the file */
+    uint64_t faces;
+    uint64_t vertices; /* output vertices */
+    float error;       /* world units, never rising from row to row */
+} pmesh_scene_level;
+
 typedef enum pmesh_profile {
     PMESH_COMPACT = 0,  /* smallest complete file; bakes twice as long, as the
                            better of two ways is kept */

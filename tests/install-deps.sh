@@ -38,6 +38,7 @@ group_build() {
 
 group_test() {
     need draco program draco_decoder
+    need python3 program python3
     need pkg-config program pkg-config
 }
 

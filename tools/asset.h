@@ -25,6 +25,7 @@ typedef struct asset_attribute {
     pmesh_attribute_kind kind;
     uint8_t set;
     uint8_t components; /* 3 for normals, 2 texcoords, 3..4 colours, 1..4 */
+    uint8_t bits;       /* for baking; 0: the kind's default */
     float *values;
     size_t count;
     uint32_t *indices;

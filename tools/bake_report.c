@@ -66,6 +66,11 @@ void bake_report_print(const bake_report *r, FILE *out, bool verbose)
             ": %" PRIu32 " faces, %" PRIu32 " vertices in %" PRIu64
             " bytes, %.2f bits per vertex\n",
             e->faces, e->vertices, e->bytes, bits_per_vertex(e));
+    if (r->meshes > 0)
+        fprintf(out,
+                "  a scene of %" PRIu32 " meshes; document %" PRIu64
+                ", images and other resources %" PRIu64 " bytes\n",
+                r->meshes, r->bytes_document, r->bytes_resources);
     fprintf(out,
             "  %" PRIu32 " levels from a base mesh of %" PRIu32
             " faces, %" PRIu32 " vertices%s\n",
@@ -158,6 +163,10 @@ void bake_report_json(const bake_report *r, FILE *out)
     json_count(&j, "input_vertices", e->input_vertices);
     json_text(&j, "profile", levels_profile_name(r->profile));
     json_text(&j, "placement", levels_placement_name(r->placement));
+    json_count(&j, "meshes", r->meshes > 0 ? r->meshes : 1);
+    json_bool(&j, "scene", r->meshes > 0);
+    json_count(&j, "document_bytes", r->bytes_document);
+    json_count(&j, "resource_bytes", r->bytes_resources);
     json_counts(&j, e);
     json_open_flat(&j, "timings", '{');
     json_seconds(&j, "read", r->seconds_read);

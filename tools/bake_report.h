@@ -17,6 +17,8 @@ typedef struct bake_report {
     uint64_t input_bytes;
     pmesh_profile profile;
     pmesh_placement placement;
+    uint32_t meshes; /* of a scene, whose sums `encode` holds; 0: no scene */
+    uint64_t bytes_document, bytes_resources; /* of a scene */
     pmesh_encode_report encode;
     double seconds_read, seconds_write, seconds_total;
     report_notes notes;

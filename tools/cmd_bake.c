@@ -10,20 +10,22 @@
 
 #include "tools/args.h"
 #include "tools/bake_report.h"
+#include "tools/bake_scene.h"
 #include "tools/cmd.h"
 #include "tools/draco_base.h"
 #include "tools/file.h"
 #include "tools/load.h"
 #include "tools/progress.h"
+#include "tools/scene_parts.h"
 
 typedef struct options {
     const char *input, *output;
     int profile, placement, metric, base, topology;
     int format; /* which of CMD_FORMATS; -1: not given */
-    uint32_t position_bits, normal_bits, uv_bits, color_bits;
+    uint32_t position_bits, normal_bits, uv_bits, color_bits, generic_bits;
     uint32_t base_faces, threads;
     double weld, threshold, max_error;
-    bool lossless, no_attributes, json, quiet, verbose, progress;
+    bool lossless, no_attributes, merge, json, quiet, verbose, progress;
 } options;
 
 #define AT(member) .offset = offsetof(options, member)
@@ -54,6 +56,13 @@ static const args_option option_table[] = {
     { .name = "color-bits", .kind = ARGS_COUNT, .value = "N", .min = 4,
       .max = 16, AT(color_bits),
       .help = "per colour component, 4 to 16; default 8" },
+    { .name = "generic-bits", .kind = ARGS_COUNT, .value = "N", .min = 4,
+      .max = 16, AT(generic_bits),
+      .help = "per component of tangents, skin weights, morph\n"
+              "targets and others, 4 to 16; default 12" },
+    { .name = "merge", .kind = ARGS_FLAG, AT(merge),
+      .help = "one mesh of all meshes of a glTF scene, without\n"
+              "textures, nodes, skins and animations" },
     { .name = "no-attributes", .kind = ARGS_FLAG, AT(no_attributes),
       .help = "leave out normals, texture coordinates and colours" },
     { .name = "base-faces", .kind = ARGS_COUNT, .value = "N", .min = 1,
@@ -158,6 +167,7 @@ static void configure(const options *o, pmesh_encoder_config *config)
     config->normal_bits = (uint8_t)o->normal_bits;
     config->texcoord_bits = (uint8_t)o->uv_bits;
     config->color_bits = (uint8_t)o->color_bits;
+    config->generic_bits = (uint8_t)o->generic_bits;
     config->base_faces = o->base_faces;
     config->base_error = o->max_error;
     config->base_coder = (pmesh_base_coder)o->base;
@@ -216,7 +226,7 @@ static int encode(const options *o, const char *name, const asset *mesh,
         const asset_attribute *a = &mesh->attributes[i];
         attributes[i] = (pmesh_attribute_input){
             .kind = a->kind, .set = a->set, .components = a->components,
-            .values = a->values, .count = a->count, .indices = a->indices,
+            .bits = a->bits, .values = a->values, .count = a->count, .indices = a->indices,
         };
     }
     const pmesh_mesh_input input = {
@@ -262,11 +272,10 @@ static int read_asset(const options *o, const char *path,
     return code;
 }
 
-static int bake(const options *o, const file_data *data, bake_report *report)
+static int bake_merged(const options *o, const file_data *data,
+                       bake_report *report, asset_bytes *bytes)
 {
     asset mesh;
-    asset_error error;
-    asset_bytes bytes = { 0 };
 
     const double start = progress_clock();
     int code = read_asset(o, report->input, data, &mesh);
@@ -274,7 +283,7 @@ static int bake(const options *o, const file_data *data, bake_report *report)
         return code;
     report->seconds_read += progress_clock() - start;
     report_note_lines(&report->notes, mesh.warnings);
-    code = encode(o, file_input_name(report->input), &mesh, report, &bytes);
+    code = encode(o, file_input_name(report->input), &mesh, report, bytes);
     asset_free(&mesh);
     if (code == CMD_DONE && (int)report->encode.base_coder != o->base)
         report_note(&report->notes,
@@ -283,6 +292,36 @@ static int bake(const options *o, const file_data *data, bake_report *report)
                           "natively (see --topology)"
                         : "Draco cannot hold this base mesh, which is coded "
                           "natively instead");
+    return code;
+}
+
+static int bake_one(void *user, const char *name, const asset *mesh,
+                    bake_report *report, asset_bytes *out)
+{
+    return encode(user, name, mesh, report, out);
+}
+
+/* A glTF file with more in it than one mesh can hold. */
+static bool is_scene(const options *o, const file_data *data, const char *path)
+{
+    const asset_format format = o->format < 0
+                                    ? asset_format_of(path)
+                                    : (asset_format)(ASSET_OBJ + o->format);
+    return !o->merge && !o->no_attributes &&
+           (format == ASSET_GLB || format == ASSET_GLTF ||
+            format == ASSET_UNKNOWN) &&
+           !load_is_stream(data, path) &&
+           scene_is_worth_it(data->bytes, data->size);
+}
+
+static int bake(options *o, const file_data *data, bake_report *report)
+{
+    asset_error error;
+    asset_bytes bytes = { 0 };
+    int code = is_scene(o, data, report->input)
+                   ? bake_scene(data, bake_one, o, report, &bytes)
+                   : bake_merged(o, data, report, &bytes);
+
     if (code == CMD_DONE) {
         const double written = progress_clock();
         if (!file_write(o->output, bytes.data, bytes.size, &error)) {
@@ -320,6 +359,7 @@ int cmd_bake(int argc, char **argv)
         .normal_bits = defaults.normal_bits,
         .uv_bits = defaults.texcoord_bits,
         .color_bits = defaults.color_bits,
+        .generic_bits = defaults.generic_bits,
     };
     int count;
     file_data data;

@@ -4,22 +4,23 @@
  */
 #include <float.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "tools/args.h"
 #include "tools/cmd.h"
+#include "tools/extract_scene.h"
 #include "tools/file.h"
 #include "tools/load.h"
 #include "tools/report.h"
+#include "tools/scene_file.h"
 #include "tools/stream.h"
 
 typedef struct options {
     const char *input, *output;
     int format; /* which of CMD_FORMATS; -1: OUT's name tells */
-    uint32_t faces;
+    uint32_t faces, mesh;
     uint64_t bytes;
     double ratio, error; /* negative: not given */
     bool inflate, strict, salvage, no_attributes, quiet;
@@ -43,6 +44,9 @@ static const args_option option_table[] = {
     { .name = "bytes", .kind = ARGS_SIZE, .value = "N", .min = 1,
       .max = FILE_LIMIT, .offset = offsetof(options, bytes),
       .help = "as if only the first N bytes had arrived" },
+    { .name = "mesh", .kind = ARGS_COUNT, .value = "N", .min = 0,
+      .max = UINT32_MAX - 1, .offset = offsetof(options, mesh),
+      .help = "of a scene, mesh N only, from 0, in its own space" },
     { .name = "inflate", .kind = ARGS_FLAG,
       .offset = offsetof(options, inflate),
       .help = "swell coarse levels to the full mesh's volume: closer\n"
@@ -111,19 +115,9 @@ static int output_failed(const extraction *job, const asset_error *error)
     return CMD_IO;
 }
 
-/* The face bound of --faces and --ratio together; 0: none. */
 static uint32_t face_bound(const options *o, uint32_t all)
 {
-    uint32_t bound = o->faces;
-
-    if (o->ratio >= 0) {
-        /* 29 % of 100 faces are 29, though 0.29 * 100 is a little less. */
-        const double share = floor(o->ratio * all * (1 + DBL_EPSILON));
-        const uint32_t faces = share < 1 ? 1 : (uint32_t)share;
-        if (bound == 0 || faces < bound)
-            bound = faces;
-    }
-    return bound;
+    return (uint32_t)extract_face_bound(o->faces, o->ratio, all);
 }
 
 /* Makes the bounded mesh visible. */
@@ -227,6 +221,22 @@ static int extract_from(const extraction *job, const file_data *data)
     asset_error error;
     stream s;
 
+    if (scene_file_is(data))
+        return extract_scene(&(extract_request){
+                                 .input = job->input, .output = job->output,
+                                 .format = job->format, .faces = o->faces,
+                                 .ratio = o->ratio, .error = o->error,
+                                 .mesh = o->mesh, .inflate = o->inflate,
+                                 .strict = o->strict,
+                                 .salvage = o->salvage,
+                                 .no_attributes = o->no_attributes,
+                                 .quiet = o->quiet },
+                             data);
+    if (o->mesh != EXTRACT_ALL_MESHES && o->mesh != 0) {
+        report_error(file_input_name(job->input), NULL,
+                     "is a single mesh, not a scene");
+        return CMD_USAGE;
+    }
     int code = stream_open(data, &s, &error);
     const bool salvaged = code == CMD_STREAM && o->salvage && s.shown;
     if (code == CMD_DONE && !s.shown) {
@@ -282,7 +292,8 @@ static int plan(const options *o, int count, char **operands, extraction *job)
 
 int cmd_extract(int argc, char **argv)
 {
-    options o = { .format = -1, .ratio = -1, .error = -1 };
+    options o = { .format = -1, .ratio = -1, .error = -1,
+                  .mesh = EXTRACT_ALL_MESHES };
     int count;
     file_data data;
     asset_error error;

@@ -12,6 +12,8 @@
 #include "tools/json.h"
 #include "tools/levels.h"
 #include "tools/report.h"
+#include "tools/scene_file.h"
+#include "tools/scene_info.h"
 #include "tools/stream.h"
 
 typedef struct options {
@@ -207,6 +209,11 @@ int cmd_info(int argc, char **argv)
     if (!file_read(path, FILE_LIMIT, &data, &error)) {
         report_asset_error(file_input_name(path), &error);
         return CMD_IO;
+    }
+    if (scene_file_is(&data)) {
+        const int done = scene_info(path, &data, o.json, o.levels);
+        file_free(&data);
+        return done;
     }
     const int code = stream_open_header(&data, &s, &error);
     if (code != CMD_DONE)

@@ -14,6 +14,7 @@
 #include "tools/file.h"
 #include "tools/load.h"
 #include "tools/report.h"
+#include "tools/scene_file.h"
 #include "tools/sheet.h"
 #include "tools/stream.h"
 
@@ -252,7 +253,7 @@ static int draw_mesh(job *j, const asset *mesh, asset_error *error)
 
 static int draw(job *j, asset_error *error)
 {
-    if (load_is_stream(&j->data, j->input)) {
+    if (load_is_stream(&j->data, j->input) && !scene_file_is(&j->data)) {
         stream s;
         int code = stream_open(&j->data, &s, error);
         if (code == CMD_DONE)
@@ -261,7 +262,7 @@ static int draw(job *j, asset_error *error)
         return code;
     }
     if (j->list.count > 0) {
-        asset_fail(error, "", "--faces is for .pmesh files only");
+        asset_fail(error, "", "--faces is for .pmesh files of one mesh only");
         return CMD_USAGE;
     }
     asset mesh;

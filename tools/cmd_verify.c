@@ -11,6 +11,7 @@
 #include "tools/file.h"
 #include "tools/json.h"
 #include "tools/report.h"
+#include "tools/scene_file.h"
 #include "tools/stream.h"
 
 typedef struct options {
@@ -48,30 +49,65 @@ typedef struct verdict {
     bool has_header;
     pmesh_header header;
     pmesh_progress_state progress;
+    /* Of a scene; its levels and faces are put into `progress`. */
+    bool is_scene;
+    uint32_t meshes, level_count;
 } verdict;
+
+static void judge_scene(const file_data *data, verdict *v)
+{
+    scene_file s;
+
+    v->is_scene = true;
+    v->code = scene_file_open(data, &s, &v->error);
+    v->meshes = s.header.mesh_count;
+    v->level_count = s.header.level_count;
+    v->progress.bytes = s.progress.bytes;
+    v->progress.faces = s.progress.faces < UINT32_MAX
+                            ? (uint32_t)s.progress.faces
+                            : UINT32_MAX;
+    while (v->progress.levels < v->level_count &&
+           s.header.levels[v->progress.levels].bytes <= s.progress.bytes)
+        v->progress.levels++;
+    if (v->code == CMD_DONE && !s.progress.complete) {
+        asset_fail(&v->error, "", "cut off after %zu bytes", data->size);
+        v->code = CMD_STREAM;
+    }
+    scene_file_close(&s);
+}
+
+static void judge_mesh(const file_data *data, verdict *v)
+{
+    stream s;
+
+    v->code = stream_open(data, &s, &v->error);
+    v->has_header = s.has_header;
+    v->header = s.header;
+    v->progress = s.progress;
+    v->level_count = s.header.level_count;
+    if (v->code == CMD_DONE && !s.progress.complete) {
+        char total[48] = "";
+        if (s.has_header)
+            snprintf(total, sizeof total, " of %" PRIu64, s.header.bytes);
+        asset_fail(&v->error, "", "cut off after %zu%s bytes", data->size,
+                   total);
+        v->code = CMD_STREAM;
+    }
+    stream_close(&s);
+}
 
 static void judge(const char *path, verdict *v)
 {
     file_data data;
-    stream s;
 
     *v = (verdict){ .code = CMD_IO };
     if (!file_read(path, FILE_LIMIT, &data, &v->error))
         return;
     v->bytes = data.size;
-    v->code = stream_open(&data, &s, &v->error);
-    v->has_header = s.has_header;
-    v->header = s.header;
-    v->progress = s.progress;
-    if (v->code == CMD_DONE && !s.progress.complete) {
-        char total[48] = "";
-        if (s.has_header)
-            snprintf(total, sizeof total, " of %" PRIu64, s.header.bytes);
-        asset_fail(&v->error, "", "cut off after %zu%s bytes", data.size,
-                   total);
-        v->code = CMD_STREAM;
-    }
-    stream_close(&s);
+    if (scene_file_is(&data))
+        judge_scene(&data, v);
+    else
+        judge_mesh(&data, v);
     file_free(&data);
 }
 
@@ -82,15 +118,18 @@ static void print_verdict(const char *path, const verdict *v)
     if (v->code == CMD_DONE) {
         report_put(stdout, name);
         printf(": good, %" PRIu64 " bytes, %" PRIu32 " levels, %" PRIu32
-               " faces%s\n",
+               " faces%s",
                v->bytes, v->progress.levels, v->progress.faces,
                v->header.exact_bytes > 0 ? ", exact positions" : "");
+        if (v->is_scene)
+            printf(", a scene of %" PRIu32 " meshes", v->meshes);
+        putchar('\n');
     } else if (v->progress.levels > 0) {
         report_error(name, v->error.where,
                      "%s; last good level %" PRIu32 " of 0..%" PRIu32
                      ", %" PRIu32 " faces",
                      v->error.what, v->progress.levels - 1,
-                     v->header.level_count - 1, v->progress.faces);
+                     v->level_count - 1, v->progress.faces);
     } else if (v->code == CMD_STREAM) {
         report_error(name, v->error.where, "%s; no level is good",
                      v->error.what);
@@ -111,6 +150,8 @@ static void json_verdict(json *j, const char *path, const verdict *v)
     json_count(j, "good_bytes", v->progress.bytes);
     json_count(j, "good_levels", v->progress.levels);
     json_count(j, "good_faces", v->progress.faces);
+    if (v->is_scene)
+        json_count(j, "meshes", v->meshes);
     if (v->has_header && v->header.exact_bytes > 0)
         json_count(j, "exact_vertices", v->progress.exact_vertices);
     if (v->code != CMD_DONE) {

@@ -11,6 +11,13 @@
  *   gltf_scene.c      node tree -> instances with world matrices
  *   gltf_survey.c     instances -> counts, channels, materials
  *   gltf_merge.c      instances -> one mesh
+ *   gltf_faces.c      triangles of a primitive
+ *
+ * or, for scenes, with everything that a primitive has:
+ *
+ *   gltf_channels.c   a mesh -> the channels that carry it
+ *   gltf_mesh.c       a mesh -> an asset, in its own space
+ *   gltf_document.cpp what is no geometry -> document and resources
  *
  * Private to these files. Everything here may meet hostile input.
  */
@@ -45,6 +52,8 @@ typedef struct gltf_source {
     size_t bin_size;
     size_t file_size;
     const char *path; /* or NULL: no side files */
+    bool everything;  /* all attributes and morph targets, in `sets`; else only
+                         what the merge takes */
 } gltf_source;
 
 /* Finds the JSON text; `warnings` takes what is odd but harmless. Nesting
@@ -104,10 +113,21 @@ typedef struct gltf_accessor {
     uint8_t *expanded; /* owned: what `view` shows after expansion, or NULL */
 } gltf_accessor;
 
+/* An attribute by its semantic. */
+typedef struct gltf_named {
+    const char *semantic;
+    uint32_t accessor;
+} gltf_named;
+
+typedef struct gltf_set {
+    size_t first, count; /* of named */
+} gltf_set;
+
 typedef struct gltf_primitive {
     uint32_t mode; /* 4 triangles, 5 strip, 6 fan */
     uint32_t position, indices, material;
     uint32_t slots[GLTF_SLOTS]; /* accessors, or GLTF_NONE */
+    size_t first_set, set_count; /* attributes, then each morph target */
 } gltf_primitive;
 
 typedef struct gltf_mesh {
@@ -128,6 +148,8 @@ typedef struct gltf_model {
     gltf_primitive *primitives;
     gltf_mesh *meshes;
     gltf_node *nodes;
+    gltf_named *named;
+    gltf_set *sets;
     uint32_t *children, *roots;
     const char **materials; /* names; empty: unnamed */
     size_t accessor_count, primitive_count, mesh_count, node_count;
@@ -162,6 +184,14 @@ typedef struct gltf_instance {
 bool gltf_scene_walk(const gltf_model *model, gltf_instance **out,
                      size_t *count, asset_error *error);
 
+/* Checks what a primitive's faces refer to, and counts them. */
+bool gltf_face_count(const gltf_model *model, const gltf_primitive *p,
+                     const char *where, uint64_t *faces, asset_error *error);
+
+/* The vertices of face `i`, below the count of its positions. */
+bool gltf_face(const gltf_model *model, const gltf_primitive *p, uint64_t i,
+               const char *where, uint32_t v[3], asset_error *error);
+
 /* What the scene comes to. */
 typedef struct gltf_plan {
     uint64_t faces;
@@ -185,6 +215,47 @@ const gltf_accessor *gltf_slot_accessor(const gltf_model *model,
 /* Fills the empty asset from prepared accessors. */
 bool gltf_merge(const gltf_model *model, const gltf_instance *instances,
                 size_t instance_count, asset *out, asset_error *error);
+
+/* ---- scenes: one asset for each mesh ------------------------------------ */
+
+/* What carries an attribute, or a morph target's, of a mesh's primitives. */
+typedef struct gltf_channel {
+    const char *semantic;
+    uint32_t set; /* 0: attributes, k: morph target k - 1 */
+    pmesh_attribute_kind kind;
+    uint8_t number, components;
+    uint8_t bits; /* 0: what the user asked for the kind */
+    bool exact;   /* whole numbers, which come back by rounding */
+} gltf_channel;
+
+typedef struct gltf_channels {
+    gltf_channel item[PMESH_MAX_ATTRIBUTES];
+    size_t count;
+    bool fits; /* false: there are too many for morph targets to be kept */
+} gltf_channels;
+
+/* Whether a primitive's faces can be coded: triangles with positions. All that
+ * a model holds are triangles. */
+bool gltf_is_coded(const gltf_primitive *p);
+
+/* Finds the channels of a mesh, the most needed first; warns of what is left
+ * out. */
+void gltf_channels_of(const gltf_model *model, const gltf_mesh *mesh,
+                      const char *name, gltf_channels *out, asset *warnings);
+
+/* A primitive's accessor for a channel; NULL: it has none that fits. */
+const gltf_accessor *gltf_channel_accessor(const gltf_model *model,
+                                           const gltf_primitive *p,
+                                           const gltf_channel *channel);
+
+/*
+ * A mesh in its own space; faces of coded primitive k have material k. Fails
+ * also if the mesh has no face at all: *empty tells. `bits` of the attributes
+ * are those of the channels.
+ */
+bool gltf_mesh_asset(const gltf_model *model, const gltf_mesh *mesh,
+                     const gltf_channels *channels, asset *out, bool *empty,
+                     asset_error *error);
 
 #ifdef __cplusplus
 }

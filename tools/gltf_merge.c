@@ -27,7 +27,7 @@ typedef struct merge {
 /* One primitive in its place. */
 typedef struct placed {
     const gltf_primitive *primitive;
-    const gltf_accessor *position, *indices; /* indices: NULL if none */
+    const gltf_accessor *position;
     const gltf_accessor *channels[PMESH_MAX_ATTRIBUTES]; /* NULL: neutral */
     const double *m;
     double cofactor[9]; /* moves normals: inverse transpose up to a factor */
@@ -67,9 +67,6 @@ static void place(const merge *g, const gltf_instance *instance, size_t k,
 
     p->primitive = &model->primitives[model->meshes[instance->mesh].first + k];
     p->position = &model->accessors[p->primitive->position];
-    p->indices = p->primitive->indices == GLTF_NONE
-                     ? NULL
-                     : &model->accessors[p->primitive->indices];
     for (size_t i = 0; i < g->out->attribute_count; i++)
         p->channels[i] =
             gltf_slot_accessor(model, p->primitive,
@@ -175,64 +172,22 @@ static bool take_vertex(merge *g, const placed *p, uint32_t v, uint32_t *id)
     return true;
 }
 
-/* Corner numbers of triangle `i` in the order of the glTF specification. */
-static void triangle(uint32_t mode, uint64_t i, uint64_t corners[3])
-{
-    if (mode == 4) {
-        for (unsigned k = 0; k < 3; k++)
-            corners[k] = 3 * i + k;
-    } else if (mode == 5) {
-        corners[0] = i;
-        corners[1] = i + 1 + i % 2;
-        corners[2] = i + 2 - i % 2;
-    } else {
-        corners[0] = i + 1;
-        corners[1] = i + 2;
-        corners[2] = 0;
-    }
-}
-
-static bool corner_vertex(const merge *g, const placed *p, uint64_t corner,
-                          uint32_t *v)
-{
-    *v = (uint32_t)corner;
-    if (!p->indices)
-        return true; /* corners were counted from the positions */
-    const uint32_t restart = p->indices->type == GLTF_U8    ? 0xFFu
-                             : p->indices->type == GLTF_U16 ? 0xFFFFu
-                                                            : 0xFFFFFFFFu;
-    *v = gltf_index(p->indices, corner);
-    if (*v == restart)
-        return asset_fail(g->error, p->where,
-                          "index %llu is a primitive restart",
-                          (unsigned long long)corner);
-    if (*v >= p->position->count)
-        return asset_fail(g->error, p->where,
-                          "index %u is out of range (%llu vertices)",
-                          (unsigned)*v,
-                          (unsigned long long)p->position->count);
-    return true;
-}
-
 static bool take_faces(merge *g, const placed *p)
 {
     const uint32_t mode = p->primitive->mode;
-    const uint64_t n = p->indices ? p->indices->count : p->position->count;
-    const uint64_t faces = mode == 4 ? n / 3 : n >= 3 ? n - 2 : 0;
+    uint64_t faces;
     const size_t material = p->primitive->material == GLTF_NONE
                                 ? g->model->material_count
                                 : p->primitive->material;
     asset *out = g->out;
 
+    if (!gltf_face_count(g->model, p->primitive, p->where, &faces, g->error))
+        return false;
     g->serial++;
     for (uint64_t i = 0; i < faces; i++) {
-        uint64_t corners[3];
         uint32_t v[3];
-        triangle(mode, i, corners);
-        for (int k = 0; k < 3; k++) {
-            if (!corner_vertex(g, p, corners[k], &v[k]))
-                return false;
-        }
+        if (!gltf_face(g->model, p->primitive, i, p->where, v, g->error))
+            return false;
         /* Strips are joined by triangles without area: no faces of anyone. */
         if (mode != 4 && (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]))
             continue;

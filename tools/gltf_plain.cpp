@@ -51,6 +51,10 @@ private:
                      size_t count, gltf_bytes bytes);
     void draco(const gltf_item &primitive, const gltf_json &extension,
                gltf_json &to);
+    bool wanted(const std::string &semantic) const;
+    bool is_vector(uint32_t accessor) const;
+    gltf_json attributes(const gltf_item &from, const gltf_json &names,
+                         gltf_json to);
     gltf_json primitive(const gltf_item &from);
     void meshes();
     void node(const gltf_item &from);
@@ -113,74 +117,32 @@ void builder::check_version() const
                                  " is not supported");
 }
 
-/* Whether geometry is complete without knowing the extension. */
-bool is_harmless(const std::string &name)
-{
-    static const char *const known[] = {
-        "KHR_draco_mesh_compression", "EXT_meshopt_compression",
-        "KHR_mesh_quantization", "KHR_lights_punctual", "KHR_animation_pointer",
-        "KHR_xmp_json_ld", "MSFT_texture_dds"
-    };
-    static const char *const families[] = { "KHR_materials_", "KHR_texture_",
-                                            "EXT_texture_" };
-    for (const char *one : known) {
-        if (name == one)
-            return true;
-    }
-    for (const char *prefix : families) {
-        if (name.rfind(prefix, 0) == 0)
-            return true;
-    }
-    return false;
-}
-
 void builder::check_extensions()
 {
     for (const gltf_json &name : list("extensionsRequired")) {
         if (!name.is_string())
             throw std::runtime_error("extensionsRequired holds no names");
-        if (!is_harmless(name.get<std::string>()))
+        if (!gltf_is_harmless(name.get<std::string>()) &&
+            !(source.everything && name == "EXT_mesh_gpu_instancing"))
             throw std::runtime_error("required extension " +
                                      quoted(name.get<std::string>()) +
                                      " is not supported");
     }
     for (const gltf_json &name : list("extensionsUsed")) {
-        if (name == "EXT_mesh_gpu_instancing")
+        if (name == "EXT_mesh_gpu_instancing" && !source.everything)
             asset_warn(warnings, "EXT_mesh_gpu_instancing is ignored");
     }
 }
 
 gltf_bytes builder::load(const gltf_item &from)
 {
-    const uint64_t size = from.whole("byteLength");
+    gltf_bytes bytes = gltf_load_buffer(source, from);
     const auto uri = from.value.find("uri");
-    if (size == 0)
-        from.fail("byteLength is 0");
-
-    if (uri == from.value.end()) {
-        if (from.number != 0 || !source.bin)
-            from.fail("there are no data for it");
-        if (size > source.bin_size)
-            from.fail("longer than the file's BIN chunk");
-        return gltf_bytes(source.bin, source.bin + size);
-    }
-    if (!uri->is_string())
-        from.fail("uri is not a string");
-    const auto &name = uri->get_ref<const std::string &>();
-    asset_error error;
-    uint64_t available;
-    if (!gltf_uri_size(&source, name.c_str(), name.size(), &available, &error))
-        from.fail(error.what);
-    if (available < size)
-        from.fail("cut off: " + std::to_string(available) + " of " +
-                  std::to_string(size) + " bytes");
-    gltf_bytes bytes(size);
-    if (!gltf_uri_read(&source, name.c_str(), name.size(), bytes.data(), size,
-                       &error))
-        from.fail(error.what);
-    if (name.compare(0, 5, "data:") != 0) {
-        plain.byte_count += size;
-        budget.left += gltf_budget_for(size).left - gltf_budget_for(0).left;
+    if (uri != from.value.end() &&
+        uri->get_ref<const std::string &>().compare(0, 5, "data:") != 0) {
+        plain.byte_count += bytes.size();
+        budget.left +=
+            gltf_budget_for(bytes.size()).left - gltf_budget_for(0).left;
     }
     return bytes;
 }
@@ -347,21 +309,20 @@ void builder::draco(const gltf_item &from, const gltf_json &extension,
     const uint32_t blob = buffer(whole);
     const slice s = cut(source_view, blob, plain.blobs[blob].size());
 
-    gltf_json wanted = gltf_json::object();
+    gltf_json taken = gltf_json::object();
     std::vector<std::string> normalised;
     for (const auto &[name, id] : ids->items()) {
         const auto ref = from.value["attributes"].find(name);
-        if (ref == from.value["attributes"].end() ||
-            (name != "POSITION" && gltf_slot(name.c_str()) < 0))
+        if (ref == from.value["attributes"].end() || !wanted(name))
             continue;
-        wanted[name] = id;
+        taken[name] = id;
         const uint32_t a =
             gltf_to_id(from, name.c_str(), *ref, accessor_ids.size());
         if (item("accessors", a).value.value("normalized", gltf_json()) == true)
             normalised.push_back(name);
     }
     gltf_draco data =
-        gltf_inflate_draco(from, wanted, normalised,
+        gltf_inflate_draco(from, taken, normalised,
                            plain.blobs[blob].data() + s.offset, s.size, budget);
     to["mode"] = 4;
     to["indices"] = decoded(from.id("indices", SIZE_MAX), GLTF_U32, 1,
@@ -376,14 +337,43 @@ void builder::draco(const gltf_item &from, const gltf_json &extension,
     }
 }
 
+bool builder::wanted(const std::string &semantic) const
+{
+    return source.everything || semantic == "POSITION" ||
+           gltf_slot(semantic.c_str()) >= 0;
+}
+
+bool builder::is_vector(uint32_t number) const
+{
+    const gltf_item from = item("accessors", number);
+    const auto type = from.value.find("type");
+    return type == from.value.end() || !type->is_string() ||
+           type->get_ref<const std::string &>().compare(0, 3, "MAT") != 0;
+}
+
+/* Adds to `to` the accessors of a list of attributes. */
+gltf_json builder::attributes(const gltf_item &from, const gltf_json &names,
+                              gltf_json to)
+{
+    for (const auto &[name, ref] : names.items()) {
+        if (!wanted(name) || to.contains(name))
+            continue;
+        const uint32_t number =
+            gltf_to_id(from, name.c_str(), ref, accessor_ids.size());
+        if (!source.everything || is_vector(number))
+            to[name] = accessor(number);
+    }
+    return to;
+}
+
 /* Null if there are no triangles in it. */
 gltf_json builder::primitive(const gltf_item &from)
 {
     const uint64_t mode = from.whole("mode", 4);
-    const gltf_json *attributes = from.object("attributes");
+    const gltf_json *names = from.object("attributes");
     if (mode > 6)
         from.fail("primitive mode " + std::to_string(mode));
-    if (!attributes)
+    if (!names)
         from.fail("a primitive without attributes");
     if (mode < 4) {
         skipped_mode = true;
@@ -398,12 +388,18 @@ gltf_json builder::primitive(const gltf_item &from)
     const gltf_json *packed = from.extension("KHR_draco_mesh_compression");
     if (packed)
         draco(from, *packed, to);
-    for (const auto &[name, ref] : attributes->items()) {
-        if ((name != "POSITION" && gltf_slot(name.c_str()) < 0) ||
-            to["attributes"].contains(name))
-            continue;
-        to["attributes"][name] =
-            accessor(gltf_to_id(from, name.c_str(), ref, accessor_ids.size()));
+    to["attributes"] = attributes(from, *names, std::move(to["attributes"]));
+    const auto targets = from.value.find("targets");
+    if (source.everything && targets != from.value.end()) {
+        if (!targets->is_array())
+            from.fail("targets is not a list");
+        to["targets"] = gltf_json::array();
+        for (const gltf_json &target : *targets) {
+            if (!target.is_object())
+                from.fail("a target is not an object");
+            to["targets"].push_back(
+                attributes(from, target, gltf_json::object()));
+        }
     }
     const uint32_t indices = from.id("indices", accessor_ids.size());
     if (indices != GLTF_NONE && !packed) {
@@ -432,9 +428,9 @@ void builder::meshes()
         }
         add("meshes", { { "primitives", std::move(to) } });
     }
-    if (skipped_mode)
+    if (skipped_mode && !source.everything)
         asset_warn(warnings, "points and lines are left out");
-    if (skipped_targets)
+    if (skipped_targets && !source.everything)
         asset_warn(warnings, "morph targets are left out");
 }
 
@@ -484,7 +480,7 @@ void builder::nodes_and_scene()
 
     for (size_t i = 0; i < count; i++)
         node(item("nodes", i));
-    if (skipped_skin)
+    if (skipped_skin && !source.everything)
         asset_warn(warnings, "skins are left out: the mesh is in its bind "
                              "pose");
     const size_t scenes = list("scenes").size();
@@ -539,6 +535,57 @@ gltf_plain builder::build()
 }
 
 } // namespace
+
+gltf_bytes gltf_load_buffer(const gltf_source &source, const gltf_item &from)
+{
+    const uint64_t size = from.whole("byteLength");
+    const auto uri = from.value.find("uri");
+    if (size == 0)
+        from.fail("byteLength is 0");
+
+    if (uri == from.value.end()) {
+        if (from.number != 0 || !source.bin)
+            from.fail("there are no data for it");
+        if (size > source.bin_size)
+            from.fail("longer than the file's BIN chunk");
+        return gltf_bytes(source.bin, source.bin + size);
+    }
+    if (!uri->is_string())
+        from.fail("uri is not a string");
+    const auto &name = uri->get_ref<const std::string &>();
+    asset_error error;
+    uint64_t available;
+    if (!gltf_uri_size(&source, name.c_str(), name.size(), &available, &error))
+        from.fail(error.what);
+    if (available < size)
+        from.fail("cut off: " + std::to_string(available) + " of " +
+                  std::to_string(size) + " bytes");
+    gltf_bytes bytes(size);
+    if (!gltf_uri_read(&source, name.c_str(), name.size(), bytes.data(), size,
+                       &error))
+        from.fail(error.what);
+    return bytes;
+}
+
+bool gltf_is_harmless(const std::string &name)
+{
+    static const char *const known[] = {
+        "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+        "KHR_mesh_quantization", "KHR_lights_punctual", "KHR_animation_pointer",
+        "KHR_xmp_json_ld", "MSFT_texture_dds"
+    };
+    static const char *const families[] = { "KHR_materials_", "KHR_texture_",
+                                            "EXT_texture_" };
+    for (const char *one : known) {
+        if (name == one)
+            return true;
+    }
+    for (const char *prefix : families) {
+        if (name.rfind(prefix, 0) == 0)
+            return true;
+    }
+    return false;
+}
 
 gltf_plain gltf_make_plain(const gltf_source &source, gltf_budget &budget,
                            asset *warnings)

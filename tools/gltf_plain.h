@@ -55,6 +55,13 @@ struct gltf_item {
 uint32_t gltf_to_id(const gltf_item &item, const char *member,
                     const gltf_json &value, size_t limit);
 
+/* All that a buffer holds: of the BIN chunk, inline or beside the file. */
+gltf_bytes gltf_load_buffer(const gltf_source &source, const gltf_item &buffer);
+
+/* Whether geometry is complete without knowing the extension, which refers to
+ * no accessor or view but where glTF itself does. */
+bool gltf_is_harmless(const std::string &extension);
+
 /* gltf_inflate.cpp */
 
 /* The bytes of a view compressed by EXT_meshopt_compression; `source` is what

@@ -87,23 +87,10 @@ const gltf_accessor *gltf_slot_accessor(const gltf_model *model,
 static bool count_faces(survey *s, const gltf_primitive *p, const char *where)
 {
     const gltf_accessor *position = &s->model->accessors[p->position];
-    const gltf_accessor *indices =
-        p->indices == GLTF_NONE ? NULL : &s->model->accessors[p->indices];
+    uint64_t faces;
 
-    if (position->components != 3 || position->type == GLTF_U32)
-        return asset_fail(s->error, where, "POSITION has a wrong type");
-    if (indices && (indices->components != 1 ||
-                    (indices->type != GLTF_U8 && indices->type != GLTF_U16 &&
-                     indices->type != GLTF_U32)))
-        return asset_fail(s->error, where, "indices have a wrong type");
-
-    const uint64_t corners = indices ? indices->count : position->count;
-    if (p->mode == 4 && corners % 3 != 0)
-        return asset_fail(s->error, where, "%llu corners are no triangles",
-                          (unsigned long long)corners);
-    const uint64_t faces = p->mode == 4    ? corners / 3
-                           : corners >= 3 ? corners - 2
-                                          : 0;
+    if (!gltf_face_count(s->model, p, where, &faces, s->error))
+        return false;
     s->plan->faces += faces;
     if (s->plan->faces > s->face_limit)
         return asset_fail(s->error, where,

@@ -7,6 +7,7 @@
  * the stranger's bytes, for it reads out of bounds on damaged files.
  */
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <new>
 
@@ -35,6 +36,8 @@ struct owner {
     std::vector<gltf_primitive> primitives;
     std::vector<gltf_mesh> meshes;
     std::vector<gltf_node> nodes;
+    std::vector<gltf_named> named;
+    std::vector<gltf_set> sets;
     std::vector<uint32_t> children, roots;
     std::vector<const char *> names;
 };
@@ -135,6 +138,15 @@ gltf_accessor convert(const Model &model, const Accessor &from)
     return to;
 }
 
+/* The names stay in the model, which is not touched any more. */
+void add_set(owner &o, const std::map<std::string, int> &attributes)
+{
+    o.sets.push_back({ o.named.size(), attributes.size() });
+    for (const auto &[name, number] : attributes)
+        o.named.push_back(
+            { name.c_str(), to_id(number, o.accessors.size()) });
+}
+
 void convert_meshes(owner &o)
 {
     const Model &model = o.model;
@@ -156,6 +168,11 @@ void convert_meshes(owner &o)
                 else if (slot >= 0)
                     to.slots[slot] = id;
             }
+            to.first_set = o.sets.size();
+            to.set_count = 1 + from.targets.size();
+            add_set(o, from.attributes);
+            for (const auto &target : from.targets)
+                add_set(o, target);
             o.primitives.push_back(to);
         }
     }
@@ -220,6 +237,8 @@ void fill(const gltf_source &source, gltf_budget &budget, asset *warnings,
     out->primitives = o->primitives.data();
     out->meshes = o->meshes.data();
     out->nodes = o->nodes.data();
+    out->named = o->named.data();
+    out->sets = o->sets.data();
     out->children = o->children.data();
     out->roots = o->roots.data();
     out->materials = o->names.data();

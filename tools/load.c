@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "tools/cmd.h"
+#include "tools/scene_file.h"
 #include "tools/stream.h"
 
 /* Enough for the decoder to tell a .pmesh from anything else. */
@@ -208,6 +209,8 @@ int load_mesh_data(const file_data *data, const char *path, asset *out,
                    asset_error *error)
 {
     *out = (asset){ 0 };
+    if (scene_file_is(data))
+        return scene_file_load(data, out, error);
     if (load_is_stream(data, path))
         return load_decoded(data, out, error);
     const bool standard = strcmp(path, "-") == 0;

@@ -15,18 +15,18 @@
 
 #define HEADER_STEP 256u /* bytes fed at a time in search of the base's end */
 
-static uint64_t memory_bound(uint64_t size)
+uint64_t stream_memory(uint64_t size)
 {
     if (size > (MEMORY_MOST - MEMORY_LEAST) / MEMORY_PER_BYTE)
         return MEMORY_MOST;
     return MEMORY_LEAST + MEMORY_PER_BYTE * size;
 }
 
-static int explain(const stream *s, pmesh_status status, uint64_t size,
+int stream_explain(const pmesh_decode_error *damage, uint64_t size,
                    asset_error *error)
 {
-    const pmesh_decode_error damage = pmesh_decoder_error(s->decoder);
-    const bool ruled = damage.rule && *damage.rule;
+    const pmesh_status status = damage->status;
+    const bool ruled = damage->rule && *damage->rule;
     char where[48] = "";
 
     if (status == PMESH_E_MEMORY) {
@@ -37,7 +37,7 @@ static int explain(const stream *s, pmesh_status status, uint64_t size,
         asset_fail(error, "",
                    "needs more memory to decode than the %llu MiB allowed for "
                    "a file of %llu bytes",
-                   (unsigned long long)(memory_bound(size) >> 20),
+                   (unsigned long long)(stream_memory(size) >> 20),
                    (unsigned long long)size);
         return CMD_STREAM;
     }
@@ -46,17 +46,23 @@ static int explain(const stream *s, pmesh_status status, uint64_t size,
         return CMD_STREAM;
     }
     snprintf(where, sizeof where, "byte %llu",
-             (unsigned long long)damage.offset);
+             (unsigned long long)damage->offset);
     asset_fail(error, where, "%s%s%s%s", pmesh_status_text(status),
-               ruled ? " (" : "", ruled ? damage.rule : "", ruled ? ")" : "");
+               ruled ? " (" : "", ruled ? damage->rule : "", ruled ? ")" : "");
     return CMD_STREAM;
+}
+
+static int explain(const stream *s, uint64_t size, asset_error *error)
+{
+    const pmesh_decode_error damage = pmesh_decoder_error(s->decoder);
+    return stream_explain(&damage, size, error);
 }
 
 static bool start(const file_data *data, stream *out, asset_error *error)
 {
     pmesh_decoder_config config = pmesh_decoder_config_default();
 
-    config.max_memory = memory_bound(data->size);
+    config.max_memory = stream_memory(data->size);
     config.base_decoder = draco_base_decode;
     *out = (stream){ 0 };
     const pmesh_status status = pmesh_decoder_create(&out->decoder, &config);
@@ -80,7 +86,7 @@ int stream_open(const file_data *data, stream *out, asset_error *error)
     look(out);
     out->shown = pmesh_decoder_refine(out->decoder, NULL, NULL) == PMESH_OK;
     if (status < 0)
-        return explain(out, status, data->size, error);
+        return explain(out, data->size, error);
     return CMD_DONE;
 }
 
@@ -103,7 +109,7 @@ int stream_open_header(const file_data *data, stream *out, asset_error *error)
     if (out->has_header)
         return CMD_DONE; /* damage behind the header is not our question */
     if (status < 0)
-        return explain(out, status, data->size, error);
+        return explain(out, data->size, error);
     asset_fail(error, "", "cut off after %zu bytes, within the header",
                data->size);
     return CMD_STREAM;

@@ -35,4 +35,11 @@ int stream_open_header(const file_data *data, stream *out, asset_error *error);
 
 void stream_close(stream *s);
 
+/* The most memory that a file of `size` bytes may take to decode. */
+uint64_t stream_memory(uint64_t size);
+
+/* The message for a failure, and the exit code. */
+int stream_explain(const pmesh_decode_error *damage, uint64_t size,
+                   asset_error *error);
+
 #endif

@@ -15,6 +15,8 @@ echo "== attributes of simplified meshes"
 tests/bench/attributes.sh
 echo "== cost of exact positions"
 tests/bench/lossless.sh
+echo "== skinned levels in motion"
+tests/bench/skin.sh
 echo "== time to decode"
 tests/bench/decode.sh
 echo "== time of moving between levels"

@@ -102,7 +102,7 @@ for faces in 200 2000 100M; do
     for model in "$dir/sample.obj" "$PMESH_MODELS"/human.obj \
         "$PMESH_MODELS"/cow.obj "$PMESH_MODELS"/CesiumMan.glb; do
         [ ! -e "$model" ] ||
-            roundtrip "$model" "--base draco --base-faces $faces"
+            roundtrip "$model" "--merge --base draco --base-faces $faces"
     done
 done
 for model in "$PMESH_MODELS"/*.obj; do

@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+#include "encoder/enc_split.h"
+
+#include <string.h>
+
+#include "format/crc32c.h"
+
+typedef struct chunk {
+    uint8_t type;
+    const uint8_t *payload;
+    uint32_t size;
+    size_t end; /* offset behind the checksum */
+} chunk;
+
+/* The chunk at `at`; NEED_DATA if the file ends within it. */
+static pmesh_status read_chunk(const enc_split *s, size_t at, chunk *out)
+{
+    pmesh_cursor in = pmesh_cursor_make(s->data + at, s->size - at);
+
+    out->type = pmesh_get_u8(&in);
+    out->size = pmesh_get_count(&in, PMESH_MAX_CHUNK_SIZE);
+    if (in.overrun || (size_t)(in.end - in.next) < out->size)
+        return PMESH_NEED_DATA;
+    out->payload = in.next;
+    in.next += out->size;
+    const uint32_t crc =
+        pmesh_crc32c(0, s->data + at, (size_t)(in.next - (s->data + at)));
+    const uint32_t stored = pmesh_get_u32(&in);
+    out->end = (size_t)(in.next - s->data);
+    if (in.overrun)
+        return PMESH_NEED_DATA;
+    return stored == crc ? PMESH_OK : PMESH_E_CHECKSUM;
+}
+
+static pmesh_status read_header(enc_split *s, size_t at, chunk *c)
+{
+    const char *rule;
+    pmesh_status status = read_chunk(s, at, c);
+    if (status != PMESH_OK)
+        return status;
+    if (c->type != PMESH_CHUNK_HEADER)
+        return PMESH_E_CORRUPT;
+    pmesh_cursor in = pmesh_cursor_make(c->payload, c->size);
+    return pmesh_header_read(&in, &s->header, &rule);
+}
+
+pmesh_status enc_split_open(enc_split *s, const void *data, size_t size)
+{
+    chunk c;
+
+    *s = (enc_split){ .data = data, .size = size };
+    if (size < PMESH_SIGNATURE_SIZE ||
+        memcmp(data, PMESH_SIGNATURE, PMESH_SIGNATURE_SIZE) != 0)
+        return PMESH_E_MAGIC;
+    pmesh_status status = read_header(s, PMESH_SIGNATURE_SIZE, &c);
+    s->header_end = c.end;
+    while (status == PMESH_OK && c.type != PMESH_CHUNK_END)
+        status = read_chunk(s, c.end, &c);
+    if (status == PMESH_OK)
+        s->size = c.end; /* bytes behind the end mean nothing */
+    return status;
+}
+
+bool enc_split_next(enc_split *s, size_t room, const uint8_t **data,
+                    size_t *size)
+{
+    const uint32_t count = s->header.level_count;
+    const uint64_t goal =
+        s->level + (s->header.exact_size == 0) < count
+            ? s->header_end + s->header.levels[s->level].bytes
+            : s->size; /* the end chunk goes with the last level */
+    size_t end = s->at == 0 ? (size_t)s->header_end : s->at;
+    chunk c;
+
+    *data = s->data + s->at;
+    while (end < goal && read_chunk(s, end, &c) == PMESH_OK &&
+           (end == s->at || c.end - s->at <= room ||
+            c.type == PMESH_CHUNK_END))
+        end = c.end;
+    *size = end - s->at;
+    s->at = end;
+    while (s->level < count &&
+           s->header_end + s->header.levels[s->level].bytes <= end)
+        s->level++;
+    return *size > 0;
+}

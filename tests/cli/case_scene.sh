@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+# shellcheck shell=sh disable=SC2154
+# glTF files with more in them than one mesh.
+
+# Two quads in two nodes: one triangle pair each, as text.
+cat >two.gltf <<'END'
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
+"nodes":[{"mesh":0,"name":"near"},{"mesh":1,"scale":[4,4,4]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]},
+{"primitives":[{"attributes":{"POSITION":0}}],"name":"second"}],
+"materials":[{"name":"unused"}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
+"min":[0,0,0],"max":[1,1,0]}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"buffers":[{"byteLength":36,"uri":
+"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}
+END
+check 'a glTF file of two meshes' 0 bake two.gltf -o two.pmesh --json
+ok 'it is a scene' out '"scene": true'
+ok 'of two meshes' test "$(json meshes)" = 2
+check '--merge' 0 bake two.gltf -o one.pmesh --merge --json
+ok '--merge makes one mesh' out '"scene": false'
+check 'info of a scene' 0 info two.pmesh --levels
+ok 'info knows the scale' out 'scale 4'
+check 'info of a scene as JSON' 0 info two.pmesh --json
+ok 'it is JSON' is_json
+check 'verify a scene' 0 verify two.pmesh
+ok 'verify counts the meshes' out 'a scene of 2 meshes'
+check 'out again' 0 extract two.pmesh -o back.gltf
+ok 'nodes have their names' grep -q '"near"' back.gltf
+ok 'the report counts faces' out '2 of 2 faces, 2 meshes'
+check 'to another format' 0 extract two.pmesh -q -o back.obj
+ok 'both meshes are there' test "$(faces back.obj)" = 2
+check 'one mesh' 0 extract two.pmesh -q --mesh 1 -o back.obj
+ok 'one mesh is one' test "$(faces back.obj)" = 1
+check 'a mesh that is not there' 2 extract two.pmesh --mesh 2 -o x.obj
+check '--mesh of a single mesh' 2 extract one.pmesh --mesh 1 -o x.obj
+check 'compare scene and input' 0 compare two.gltf two.pmesh
+"$PMESH" extract - -q -o - --format glb <two.pmesh >pipe.glb
+check 'from pipe to pipe' 0 bake pipe.glb -q -o again.pmesh
+bytes=$(size two.pmesh)
+head -c $((bytes - 1)) two.pmesh >cut.pmesh
+check 'verify a scene that is cut off' 4 verify cut.pmesh
+check '--strict' 4 extract cut.pmesh --strict -o x.glb
+head -c 20 two.pmesh >cut.pmesh
+check 'cut off within the header' 4 extract cut.pmesh -o x.glb
+check 'info of that' 4 info cut.pmesh
+cp two.pmesh bad.pmesh
+flip bad.pmesh $((bytes - 30))
+check 'a damaged scene' 4 extract bad.pmesh -o x.glb
+ok 'the message names the byte' err 'bad.pmesh:byte [0-9]*: '
+check '--salvage a scene' 0 extract bad.pmesh -q --salvage --mesh 0 -o x.obj

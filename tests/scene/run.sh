@@ -1,0 +1,121 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+# Usage: PMESH=build/release/pmesh tests/scene/run.sh
+#        VALIDATE="node tests/scene/validate.js": each output, too
+#        TRANSFORM=gltf-transform: also of files by Draco and meshoptimizer
+#        (make check-gltf sets both)
+#
+# glTF scenes in and out: everything but geometry is as it was, all of the
+# geometry comes back, any prefix and budget is a scene. Takes a generated zoo
+# and the glTF files of PMESH_MODELS, if they are there.
+set -u
+PMESH_MODELS=${PMESH_MODELS:-../shared/models}
+suite=scene
+. tests/harness.sh
+here=tests/scene
+
+bakes_as_a_scene() {
+    "$PMESH" bake --json "$model" -o "$dir/a.pmesh" >"$dir/report.json" &&
+        grep -q '"scene": true' "$dir/report.json" &&
+        "$PMESH" verify "$dir/a.pmesh"
+}
+
+bakes_the_same_again() {
+    "$PMESH" bake -q "$model" -o "$dir/b.pmesh" -j 2 &&
+        cmp "$dir/a.pmesh" "$dir/b.pmesh"
+}
+
+# The first number behind a key of `pmesh info`.
+info() {
+    "$PMESH" info --json "$dir/a.pmesh" |
+        sed -n "s/.*\"$1\": *\([-+.0-9eE]*\).*/\1/p" | head -n 1
+}
+
+comes_back_whole() {
+    "$PMESH" extract -q "$dir/a.pmesh" -o "$dir/full.glb" &&
+        "$PMESH" extract -q "$dir/a.pmesh" -o "$dir/full.gltf" &&
+        python3 $here/compare.py "$model" "$dir/full.glb" full &&
+        python3 $here/compare.py "$model" "$dir/full.gltf" full
+}
+
+faces_written() {
+    sed -n 's/.*: \([0-9]*\) of .* faces, .* meshes.*/\1/p' "$dir/said"
+}
+
+budgets_are_met_without_cracks() {
+    full=$(info faces)
+    base=$(info base_faces)
+    for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+        budget=$((base + (full - base) * i * i / 400))
+        "$PMESH" extract "$dir/a.pmesh" --faces "$budget" \
+            -o "$dir/lod$i.glb" >"$dir/said" || return 1
+        count=$(faces_written)
+        echo "$count faces for a budget of $budget"
+        test "$count" -le "$budget" && test "$count" -ge $((budget - 2)) ||
+            return 1
+        python3 $here/compare.py "$model" "$dir/lod$i.glb" || return 1
+    done
+    python3 $here/cracks.py "$dir/full.glb" "$dir"/lod*.glb
+}
+
+prefixes_are_scenes() {
+    size=$(wc -c <"$dir/a.pmesh")
+    base=$("$PMESH" info --json "$dir/a.pmesh" |
+        sed -n 's/.*{"bytes": \([0-9]*\).*/\1/p' | head -n 1)
+    last=0
+    for percent in 0 5 10 20 40 60 80 99; do
+        head -c $((base + (size - base) * percent / 100)) "$dir/a.pmesh" \
+            >"$dir/cut.pmesh"
+        "$PMESH" extract "$dir/cut.pmesh" -o "$dir/cut$percent.glb" \
+            >"$dir/said" || return 1
+        count=$(faces_written)
+        test "$count" -ge "$last" || return 1
+        last=$count
+    done
+    head -c $((base - 1)) "$dir/a.pmesh" >"$dir/cut.pmesh"
+    ! "$PMESH" extract -q "$dir/cut.pmesh" -o "$dir/x.glb"
+}
+
+merges_into_other_formats() {
+    "$PMESH" extract -q "$dir/a.pmesh" -o "$dir/full.obj" &&
+        "$PMESH" compare "$model" "$dir/full.obj" --samples 2000 &&
+        "$PMESH" extract -q "$dir/a.pmesh" --mesh 0 -o "$dir/one.ply"
+}
+
+is_valid() {
+    # shellcheck disable=SC2086 # words on purpose
+    $VALIDATE "$model" "$dir/full.glb" "$dir/full.gltf" "$dir"/lod*.glb \
+        "$dir"/cut*.glb
+}
+
+scene() {
+    model=$1
+    name=$(basename "$model")
+    rm -f "$dir"/*.glb
+    try "$name: bakes as a scene" bakes_as_a_scene
+    try "$name: bakes the same again" bakes_the_same_again
+    try "$name: comes back whole" comes_back_whole
+    try "$name: budgets are met without cracks" budgets_are_met_without_cracks
+    try "$name: prefixes are scenes" prefixes_are_scenes
+    try "$name: merges into other formats" merges_into_other_formats
+    [ -z "${VALIDATE-}" ] || try "$name: is valid" is_valid
+}
+
+if ! command -v python3 >/dev/null; then
+    echo "scene: skipped, there is no python3"
+    exit 0
+fi
+mkdir "$dir/zoo" && python3 $here/zoo.py "$dir/zoo" || exit 1
+if [ -n "${TRANSFORM-}" ]; then
+    for coder in draco meshopt; do
+        for name in skinned textures scenes; do
+            $TRANSFORM $coder "$dir/zoo/$name.glb" \
+                "$dir/zoo/$name-$coder.glb" >/dev/null || exit 1
+        done
+    done
+fi
+for model in "$dir"/zoo/*.glb "$PMESH_MODELS"/*.glb \
+    "$PMESH_MODELS"/*/*.gltf; do
+    [ ! -e "$model" ] || scene "$model"
+done
+summary

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+/* glTF scenes taken apart and put together again: on documents that lie. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "encoder/pmesh_scene_encode.h"
+#include "tests/unit/shapes.h"
+#include "tests/unit/test.h"
+#include "tools/scene_parts.h"
+#include "tools/scene_write.h"
+
+static int collect(void *user, const void *data, size_t size)
+{
+    asset_put(user, data, size);
+    return 0;
+}
+
+/* Whether a scene of one torus with this document is written as a .glb; if not,
+ * there is a message. */
+static bool writes(const char *document)
+{
+    shape_mesh *shape = shape_make(SHAPE_TORUS, 8, 1);
+    const pmesh_encoder_config config = pmesh_encoder_config_default();
+    pmesh_encode_report report;
+    shape_bytes stream;
+    asset_bytes file = { 0 }, out = { 0 };
+    asset notes = { 0 };
+    asset_error error = { "", "" };
+    pmesh_scene *scene;
+
+    CHECK(shape_bake(shape, &config, &stream, &report) == PMESH_OK);
+    shape_free(shape);
+    const pmesh_scene_mesh_input mesh = { stream.data, stream.size, 1 };
+    const pmesh_scene_blob blob = { "0123456789", 10 };
+    const pmesh_scene_input input = {
+        .meshes = &mesh, .mesh_count = 1,
+        .document = { document, strlen(document) },
+        .resources = &blob, .resource_count = 1
+    };
+    CHECK(pmesh_scene_encode(&input, NULL, collect, &file, NULL) == PMESH_OK);
+    CHECK(pmesh_scene_create(&scene, NULL) == PMESH_OK);
+    CHECK(pmesh_scene_feed(scene, file.data, file.size) == PMESH_OK);
+    const bool ok = scene_write(scene, (scene_style){ .glb = true }, &out,
+                                &notes, &error);
+    CHECK(ok || error.what[0] != '\0');
+    pmesh_scene_destroy(scene);
+    asset_bytes_free(&file);
+    asset_bytes_free(&out);
+    free(stream.data);
+    return ok;
+}
+
+#define ASSET "\"asset\":{\"version\":\"2.0\"}"
+#define PRIMITIVE(record)                                                  \
+    "{" ASSET ",\"meshes\":[{\"primitives\":[{\"attributes\":{},"          \
+    "\"extensions\":{\"PMESH_progressive\":" record "}}]}]}"
+#define TORUS "{\"mesh\":0,\"material\":0,\"attributes\":{\"POSITION\":{}}}"
+
+TEST(scene_is_written_by_its_document)
+{
+    CHECK(writes(PRIMITIVE(TORUS)));
+}
+
+TEST(scene_documents_that_lie_are_refused)
+{
+    static const char *const documents[] = {
+        "", "{", "[]", "{}", "12", "{\"meshes\":3}", "{\"meshes\":[3]}",
+        "{\"meshes\":[{\"primitives\":[[]]}],\"accessors\":{}}\x80",
+        PRIMITIVE("{}"), PRIMITIVE("[]"), PRIMITIVE("null"),
+        PRIMITIVE("{\"mesh\":1,\"material\":0,\"attributes\":{}}"),
+        PRIMITIVE("{\"mesh\":-1,\"material\":0,\"attributes\":{}}"),
+        PRIMITIVE("{\"mesh\":0,\"material\":1,\"attributes\":{}}"),
+        PRIMITIVE("{\"mesh\":0,\"material\":4294967295,\"attributes\":{}}"),
+        PRIMITIVE("{\"mesh\":0,\"material\":0,\"attributes\":{\"NORMAL\":"
+                  "{\"channel\":0,\"type\":\"VEC3\"}}}"),
+        PRIMITIVE("{\"mesh\":0,\"material\":0,\"attributes\":{\"NORMAL\":"
+                  "{\"channel\":-7,\"type\":\"VEC3\"}}}"),
+        PRIMITIVE("{\"mesh\":0,\"material\":0,\"attributes\":{\"NORMAL\":7}}"),
+        "{" ASSET ",\"meshes\":[],\"bufferViews\":[{\"buffer\":1}]}",
+        "{" ASSET ",\"meshes\":[],\"bufferViews\":[{\"buffer\":-1}]}",
+        "{" ASSET ",\"meshes\":[],\"bufferViews\":[7]}",
+        "{" ASSET ",\"meshes\":[],\"images\":[{\"bufferView\":5}]}",
+        "{" ASSET ",\"meshes\":[],\"extensions\":{\"PMESH_progressive\":"
+        "{\"accessors\":[0]}}}",
+        "{" ASSET ",\"meshes\":[],\"extensions\":{\"PMESH_progressive\":7}}"
+    };
+    for (size_t i = 0; i < sizeof documents / sizeof *documents; i++)
+        CHECK(!writes(documents[i]));
+}
+
+/* A .gltf with one triangle in a data URI. */
+#define GLTF(more)                                                          \
+    "{" ASSET ",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"     \
+    "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"    \
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"  \
+    "\"type\":\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,"                   \
+    "\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":"          \
+    "\"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]"   \
+    more "}"
+
+static bool takes_apart(const char *text)
+{
+    scene_parts parts;
+    asset_error error = { "", "" };
+    const bool ok = scene_parts_read((const uint8_t *)text, strlen(text), NULL,
+                                     &parts, &error);
+    CHECK(ok || error.what[0] != '\0');
+    if (ok)
+        scene_parts_free(&parts);
+    return ok;
+}
+
+TEST(scene_parts_refuse_references_that_lead_nowhere)
+{
+    static const char *const bad[] = {
+        GLTF(",\"skins\":[{\"joints\":[0],\"inverseBindMatrices\":9}]"),
+        GLTF(",\"skins\":[3]"), GLTF(",\"skins\":{\"a\":1}"),
+        GLTF(",\"animations\":[{}]"),
+        GLTF(",\"animations\":[{\"samplers\":[{\"input\":-1}]}]"),
+        GLTF(",\"images\":[{\"bufferView\":4}]"), GLTF(",\"images\":[1]")
+    };
+    CHECK(takes_apart(GLTF("")));
+    CHECK(takes_apart(GLTF(",\"images\":[{\"uri\":\"nowhere.png\"}]")));
+    CHECK(takes_apart(GLTF(",\"extensions\":{\"X\":[0,1,2,3e9,-1,\"a\"]}")));
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        CHECK(!takes_apart(bad[i]));
+}
+
+TEST(scene_is_worth_more_than_a_mesh_if_it_has_looks)
+{
+    static const struct {
+        const char *text;
+        bool worth;
+    } cases[] = {
+        { GLTF(""), false },
+        { GLTF(",\"materials\":[{\"name\":\"a\"}]"), false },
+        { GLTF(",\"materials\":[{\"doubleSided\":true}]"), true },
+        { GLTF(",\"images\":[{\"uri\":\"a.png\"}]"), true },
+        { GLTF(",\"skins\":[{}]"), true },
+        { "{\"meshes\":[{},{}]}", true },
+        { "v 0 0 0", false }, { "", false }
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        CHECK(scene_is_worth_it((const uint8_t *)cases[i].text,
+                                strlen(cases[i].text)) == cases[i].worth);
+}

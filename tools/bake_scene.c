@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT */
+#include "tools/bake_scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "encoder/pmesh_scene_encode.h"
+#include "tools/cmd.h"
+#include "tools/progress.h"
+#include "tools/scene_parts.h"
+
+static int collect(void *user, const void *data, size_t size)
+{
+    asset_bytes *bytes = user;
+    asset_put(bytes, data, size);
+    return bytes->failed;
+}
+
+/* What of one mesh counts for the scene. */
+static void add_counts(pmesh_encode_report *sum, const pmesh_encode_report *r)
+{
+    sum->input_faces += r->input_faces;
+    sum->input_vertices += r->input_vertices;
+    sum->degenerate_faces += r->degenerate_faces;
+    sum->duplicate_faces += r->duplicate_faces;
+    sum->not_finite_faces += r->not_finite_faces;
+    sum->not_finite_values += r->not_finite_values;
+    sum->welded_vertices += r->welded_vertices;
+    sum->unused_vertices += r->unused_vertices;
+    sum->zero_twins += r->zero_twins;
+    sum->cut_vertices += r->cut_vertices;
+    sum->components += r->components;
+    sum->faces += r->faces;
+    sum->vertices += r->vertices;
+    sum->wedges += r->wedges;
+    sum->base_faces += r->base_faces;
+    sum->base_vertices += r->base_vertices;
+    sum->bytes_base += r->bytes_base;
+    sum->bytes_connectivity += r->bytes_connectivity;
+    sum->bytes_positions += r->bytes_positions;
+    sum->bytes_attributes += r->bytes_attributes;
+    sum->bytes_lossless += r->bytes_lossless;
+    sum->seconds_import += r->seconds_import;
+    sum->seconds_contract += r->seconds_contract;
+    sum->seconds_code += r->seconds_code;
+    sum->grid = r->grid;
+    sum->base_coder = r->base_coder;
+}
+
+static uint32_t count32(uint64_t value)
+{
+    return value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
+}
+
+/* The scene's own figures over the sums of its meshes. */
+static void add_scene(bake_report *report, const pmesh_scene_report *scene,
+                      const scene_parts *parts)
+{
+    pmesh_encode_report *e = &report->encode;
+
+    e->bytes = scene->bytes;
+    e->bytes_header = scene->bytes - scene->bytes_document -
+                      scene->bytes_resources - e->bytes_base -
+                      e->bytes_connectivity - e->bytes_positions -
+                      e->bytes_attributes - e->bytes_lossless;
+    e->level_count = scene->level_count;
+    for (uint32_t i = 0; i < scene->level_count; i++) {
+        const pmesh_scene_level *level = &scene->levels[i];
+        e->levels[i] = (pmesh_level){
+            .bytes = level->bytes, .faces = count32(level->faces),
+            .mesh_vertices = count32(level->vertices),
+            .vertices = count32(level->vertices), .error = level->error
+        };
+    }
+    report->meshes = (uint32_t)parts->mesh_count;
+    report->bytes_document = scene->bytes_document;
+    report->bytes_resources = scene->bytes_resources;
+}
+
+static int put_together(const scene_parts *parts, const asset_bytes *streams,
+                        bake_report *report, asset_bytes *out)
+{
+    pmesh_scene_mesh_input *meshes = calloc(parts->mesh_count, sizeof *meshes);
+    pmesh_scene_blob *resources =
+        calloc(parts->resource_count + 1, sizeof *resources);
+    pmesh_scene_report scene;
+    pmesh_status status = PMESH_E_MEMORY;
+
+    if (meshes && resources) {
+        for (size_t i = 0; i < parts->mesh_count; i++)
+            meshes[i] = (pmesh_scene_mesh_input){
+                streams[i].data, streams[i].size, parts->meshes[i].scale
+            };
+        for (size_t i = 0; i < parts->resource_count; i++)
+            resources[i] = (pmesh_scene_blob){ parts->resources[i].data,
+                                               parts->resources[i].size };
+        const pmesh_scene_input input = {
+            .meshes = meshes, .mesh_count = parts->mesh_count,
+            .document = { parts->document.data, parts->document.size },
+            .resources = resources, .resource_count = parts->resource_count,
+            .early_count = parts->early_count
+        };
+        status = pmesh_scene_encode(&input, NULL, collect, out, &scene);
+    }
+    free(meshes);
+    free(resources);
+    if (status == PMESH_OK) {
+        add_scene(report, &scene, parts);
+        return CMD_DONE;
+    }
+    report_error(file_input_name(report->input), NULL, "%s",
+                 status == PMESH_E_LIMIT ? "too large for a scene"
+                                         : pmesh_status_text(status));
+    return status == PMESH_E_LIMIT ? CMD_ASSET : CMD_IO;
+}
+
+static int bake_meshes(const scene_parts *parts, bake_mesh bake, void *user,
+                       bake_report *report, asset_bytes *streams)
+{
+    for (size_t i = 0; i < parts->mesh_count; i++) {
+        bake_report one = { .input = report->input, .output = report->output };
+        const int code = bake(user, parts->meshes[i].name,
+                              &parts->meshes[i].mesh, &one, &streams[i]);
+        if (code != CMD_DONE)
+            return code;
+        add_counts(&report->encode, &one.encode);
+    }
+    return CMD_DONE;
+}
+
+int bake_scene(const file_data *data, bake_mesh bake, void *user,
+               bake_report *report, asset_bytes *out)
+{
+    const bool standard = strcmp(report->input, "-") == 0;
+    const double start = progress_clock();
+    scene_parts parts;
+    asset_error error;
+
+    if (!scene_parts_read(data->bytes, data->size,
+                          standard ? NULL : report->input, &parts, &error)) {
+        report_asset_error(file_input_name(report->input), &error);
+        return CMD_ASSET;
+    }
+    report->seconds_read += progress_clock() - start;
+    report_note_lines(&report->notes, parts.notes.warnings);
+    asset_bytes *streams = calloc(parts.mesh_count, sizeof *streams);
+    int code = CMD_IO;
+    if (!streams)
+        report_error(file_input_name(report->input), NULL, "out of memory");
+    else
+        code = bake_meshes(&parts, bake, user, report, streams);
+    if (code == CMD_DONE)
+        code = put_together(&parts, streams, report, out);
+    for (size_t i = 0; streams && i < parts.mesh_count; i++)
+        asset_bytes_free(&streams[i]);
+    free(streams);
+    scene_parts_free(&parts);
+    return code;
+}

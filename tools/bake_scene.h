@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * bake_scene.h - a whole glTF scene into one file.
+ */
+#ifndef BAKE_SCENE_H
+#define BAKE_SCENE_H
+
+#include "tools/bake_report.h"
+#include "tools/file.h"
+
+/* Bakes one mesh into `out`, fills report->encode; returns an exit code and has
+ * said why unless it is CMD_DONE. */
+typedef int (*bake_mesh)(void *user, const char *name, const asset *mesh,
+                         bake_report *report, asset_bytes *out);
+
+/*
+ * Bakes the scene in `data` into `out`: each of its meshes by `bake`, then all
+ * of them together. report->encode gets the sums and the scene's level table.
+ */
+int bake_scene(const file_data *data, bake_mesh bake, void *user,
+               bake_report *report, asset_bytes *out);
+
+#endif

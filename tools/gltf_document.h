@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * gltf_document.h - the JSON of a scene, with its geometry taken out.
+ * Functions throw std::runtime_error.
+ */
+#ifndef GLTF_DOCUMENT_H
+#define GLTF_DOCUMENT_H
+
+#include "tools/gltf_plain.h"
+
+/* Keeps members in their order. */
+using gltf_document = nlohmann::ordered_json;
+
+#define GLTF_PROGRESSIVE "PMESH_progressive"
+
+/* Which stream, and which material of it, a primitive became, and how. */
+struct gltf_stream {
+    uint32_t number = GLTF_NONE; /* GLTF_NONE: it is kept as it is */
+    uint32_t material = 0;
+    gltf_channels channels = {};
+};
+
+struct gltf_parts {
+    std::string document;
+    std::vector<gltf_bytes> resources;
+    size_t early = 0;
+};
+
+/*
+ * Writes the document. `streams` has an element for each primitive of the
+ * model, which was loaded from `source` with everything.
+ */
+gltf_parts gltf_take_apart(const gltf_source &source, const gltf_model &model,
+                           const std::vector<gltf_stream> &streams,
+                           gltf_budget &budget, asset *warnings);
+
+/* The largest scale of the instances of each mesh, over all scenes. */
+std::vector<double> gltf_scales(const gltf_source &source);
+
+/* Erases a member, and what holds it if nothing else is left there. */
+void gltf_erase_extension(gltf_document &object, const char *name);
+
+#endif

@@ -1,0 +1,214 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * gltf_mesh.c - one mesh of a glTF scene as an asset: in its own space, with all
+ * attributes that its channels carry, one material for each primitive.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "tools/gltf.h"
+
+typedef struct maker {
+    const gltf_model *model;
+    const gltf_channels *channels;
+    asset *out;
+    asset_error *error;
+    bool empty;
+    uint32_t *map, *stamp, serial; /* map[v] is valid if stamp[v] == serial */
+} maker;
+
+/* One primitive at work. */
+typedef struct part {
+    const gltf_primitive *primitive;
+    const gltf_accessor *position;
+    const gltf_accessor *channel[PMESH_MAX_ATTRIBUTES]; /* NULL: neutral */
+    uint32_t material;
+    uint64_t faces;
+    char where[48];
+} part;
+
+/* A mesh may use a few vertices of a large buffer: room is for those that faces
+ * can name. */
+static bool reserve(maker *m, uint64_t faces, uint64_t vertices,
+                    uint64_t largest)
+{
+    asset *out = m->out;
+    bool ok = true;
+
+    if (faces > GLTF_MAX_FACES)
+        return asset_fail(m->error, "", "more than %llu triangles",
+                          (unsigned long long)GLTF_MAX_FACES);
+    out->positions = malloc((size_t)vertices * 3 * sizeof *out->positions);
+    out->indices = malloc((size_t)faces * 3 * sizeof *out->indices);
+    out->materials = malloc((size_t)faces * sizeof *out->materials);
+    m->map = malloc((size_t)largest * sizeof *m->map);
+    m->stamp = calloc((size_t)largest, sizeof *m->stamp);
+    for (size_t i = 0; i < m->channels->count; i++) {
+        const gltf_channel *c = &m->channels->item[i];
+        float *values =
+            malloc((size_t)vertices * c->components * sizeof *values);
+        out->attributes[i] = (asset_attribute){
+            .kind = c->kind, .set = c->number, .components = c->components,
+            .bits = c->bits, .values = values
+        };
+        ok = ok && values;
+    }
+    out->attribute_count = m->channels->count;
+    ok = ok && out->positions && out->indices && out->materials && m->map &&
+         m->stamp;
+    return ok || asset_fail(m->error, "", "out of memory");
+}
+
+static void put_channel(const maker *m, const part *p, size_t i, uint32_t v,
+                        size_t id)
+{
+    const gltf_channel *c = &m->channels->item[i];
+    float *out = m->out->attributes[i].values + id * c->components;
+    double in[4] = { 0 };
+
+    for (unsigned k = 0; k < c->components; k++)
+        out[k] = c->kind == PMESH_COLOR ? 1.0f : 0.0f;
+    if (c->kind == PMESH_NORMAL)
+        out[2] = 1.0f;
+    if (!p->channel[i])
+        return;
+    gltf_get(p->channel[i], v, in);
+    for (unsigned k = 0; k < p->channel[i]->components; k++)
+        out[k] = fabs(in[k]) <= (double)FLT_MAX ? (float)in[k] : NAN;
+}
+
+static bool take_vertex(maker *m, const part *p, uint32_t v, uint32_t *id)
+{
+    if (m->stamp[v] != m->serial) {
+        const size_t n = m->out->vertex_count++;
+        double xyz[4];
+        gltf_get(p->position, v, xyz);
+        for (int i = 0; i < 3; i++) {
+            m->out->positions[3 * n + (size_t)i] = xyz[i];
+            if (!isfinite(xyz[i]))
+                return asset_fail(m->error, p->where, "vertex %u has a position "
+                                  "that is not finite", (unsigned)v);
+        }
+        for (size_t i = 0; i < m->channels->count; i++)
+            put_channel(m, p, i, v, n);
+        m->stamp[v] = m->serial;
+        m->map[v] = (uint32_t)n;
+    }
+    *id = m->map[v];
+    return true;
+}
+
+static bool take_faces(maker *m, const part *p)
+{
+    asset *out = m->out;
+
+    m->serial++;
+    for (uint64_t i = 0; i < p->faces; i++) {
+        uint32_t v[3];
+        if (!gltf_face(m->model, p->primitive, i, p->where, v, m->error))
+            return false;
+        /* Strips are joined by triangles without area: no faces of anyone. */
+        if (p->primitive->mode != 4 &&
+            (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]))
+            continue;
+        for (size_t k = 0; k < 3; k++)
+            if (!take_vertex(m, p, v[k], &out->indices[3 * out->face_count + k]))
+                return false;
+        out->materials[out->face_count++] = p->material;
+    }
+    return true;
+}
+
+/* Names a primitive by its mesh, of which `mesh` may be a part. */
+static void place_of(const gltf_model *model, size_t primitive, char *where,
+                     size_t size)
+{
+    size_t i = 0;
+    while (i + 1 < model->mesh_count &&
+           primitive >= model->meshes[i].first + model->meshes[i].count)
+        i++;
+    snprintf(where, size, "mesh %zu, primitive %zu", i,
+             primitive - model->meshes[i].first);
+}
+
+/* The coded primitives of a mesh, counted; at most mesh->count. */
+static bool find_parts(const maker *m, const gltf_mesh *mesh, part *parts,
+                       size_t *count)
+{
+    *count = 0;
+    for (size_t k = 0; k < mesh->count; k++) {
+        const gltf_primitive *primitive =
+            &m->model->primitives[mesh->first + k];
+        part *p = &parts[*count];
+        if (!gltf_is_coded(primitive))
+            continue;
+        *p = (part){ .primitive = primitive,
+                     .position = &m->model->accessors[primitive->position],
+                     .material = (uint32_t)(*count)++ };
+        place_of(m->model, mesh->first + k, p->where, sizeof p->where);
+        if (!gltf_face_count(m->model, primitive, p->where, &p->faces,
+                             m->error))
+            return false;
+        for (size_t i = 0; i < m->channels->count; i++)
+            p->channel[i] = gltf_channel_accessor(m->model, primitive,
+                                                  &m->channels->item[i]);
+    }
+    return true;
+}
+
+static bool fail_empty(maker *m)
+{
+    m->empty = true;
+    return asset_fail(m->error, "", "the mesh has no triangles");
+}
+
+static bool make(maker *m, const gltf_mesh *mesh, part *parts)
+{
+    uint64_t faces = 0, vertices = 0, largest = 1;
+    size_t count;
+
+    if (!find_parts(m, mesh, parts, &count))
+        return false;
+    for (size_t k = 0; k < count; k++) {
+        const uint64_t n = parts[k].position->count;
+        const uint64_t named = 3 * parts[k].faces;
+        faces += parts[k].faces;
+        vertices += n < named ? n : named;
+        largest = n > largest ? n : largest;
+    }
+    if (faces == 0)
+        return fail_empty(m);
+    m->out->material_count = (uint32_t)count;
+    if (!reserve(m, faces, vertices, largest))
+        return false;
+    for (size_t k = 0; k < count; k++)
+        if (!take_faces(m, &parts[k]))
+            return false;
+    for (size_t i = 0; i < m->out->attribute_count; i++)
+        m->out->attributes[i].count = m->out->vertex_count;
+    return m->out->face_count > 0 || fail_empty(m);
+}
+
+bool gltf_mesh_asset(const gltf_model *model, const gltf_mesh *mesh,
+                     const gltf_channels *channels, asset *out, bool *empty,
+                     asset_error *error)
+{
+    maker m = { .model = model, .channels = channels, .out = out,
+                .error = error };
+    part *parts = calloc(mesh->count + 1, sizeof *parts);
+
+    *out = (asset){ 0 };
+    const bool ok = parts ? make(&m, mesh, parts)
+                          : asset_fail(error, "", "out of memory");
+    *empty = m.empty;
+    free(parts);
+    free(m.map);
+    free(m.stamp);
+    if (!ok) {
+        asset_free(out);
+        *out = (asset){ 0 };
+    }
+    return ok;
+}

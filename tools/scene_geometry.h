@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * scene_geometry.h - the vertices and indices of one primitive, out of a mesh at
+ * its visible level. Functions throw std::runtime_error.
+ */
+#ifndef SCENE_GEOMETRY_H
+#define SCENE_GEOMETRY_H
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "decoder/pmesh_decode.h"
+
+/* How an attribute was stored, and is to be again. */
+struct scene_form {
+    int channel; /* of the mesh */
+    unsigned components;
+    int component_type;
+    bool normalised, exact;
+};
+
+/* Data of one accessor; rows are `stride` bytes apart. */
+struct scene_array {
+    std::vector<uint8_t> bytes;
+    size_t count = 0;
+    unsigned components = 0, stride = 0;
+    int component_type = 0;
+    bool normalised = false;
+    std::vector<float> low, high; /* of floats */
+};
+
+/* A mesh at the level it shows now. */
+class scene_geometry {
+public:
+    scene_geometry(const pmesh_decoder *decoder, bool inflate);
+
+    /* Chooses the faces of one material; their vertices are numbered in order
+     * of appearance. A material without faces at this level gets one of no
+     * area, since a primitive must have some. */
+    void choose(uint32_t material);
+
+    scene_array indices() const;
+    scene_array positions() const;
+
+    /* By semantic: JOINTS_n and WEIGHTS_n depend on each other, so all
+     * attributes of a primitive are made at once. */
+    std::map<std::string, scene_array>
+    attributes(const std::map<std::string, scene_form> &forms);
+
+    /* Of a morph target: floats as they are. */
+    scene_array differences(const scene_form &form);
+
+private:
+    const pmesh_decoder *decoder;
+    pmesh_header header;
+    pmesh_view view;
+    std::vector<float> xyz;
+    std::vector<std::vector<float>> channels; /* filled when needed */
+    std::vector<uint32_t> order, first;       /* faces by material */
+    std::vector<uint32_t> number;             /* wedge -> vertex */
+    std::vector<uint32_t> wedges, corners;    /* of the chosen faces */
+
+    const std::vector<float> &channel(int number);
+    std::vector<float> gather(const scene_form &form);
+};
+
+#endif

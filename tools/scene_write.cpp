@@ -1,0 +1,419 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * scene_write.cpp - the document, edited: accessors and views of the visible
+ * level take the places that are free, and go behind the others when these are
+ * used up. All bytes move into one buffer.
+ */
+#include "tools/scene_write.h"
+
+#include <memory>
+#include <new>
+
+#include "tools/gltf_document.h"
+#include "tools/scene_geometry.h"
+
+namespace {
+
+enum { TARGET_VERTICES = 34962, TARGET_INDICES = 34963 };
+
+/* One grey pixel, in the place of an image that has not arrived. */
+const uint8_t pixel[] = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d,
+    0x49, 0x48, 0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01,
+    0x08, 0x00, 0x00, 0x00, 0x00, 0x3a, 0x7e, 0x9b, 0x55, 0x00, 0x00, 0x00,
+    0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0x68, 0x00, 0x00, 0x00,
+    0x82, 0x00, 0x81, 0xda, 0x45, 0x08, 0x3b, 0x00, 0x00, 0x00, 0x00, 0x49,
+    0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82
+};
+
+class writer {
+public:
+    writer(pmesh_scene *from, scene_style how, asset *warn)
+        : scene(from), style(how), notes(warn)
+    {
+    }
+    void write(asset_bytes *out);
+
+private:
+    pmesh_scene *scene;
+    scene_style style;
+    asset *notes;
+    gltf_document doc;
+    gltf_bytes bin;
+    std::vector<size_t> free_accessors, free_views; /* the last is next */
+    std::map<uint32_t, std::unique_ptr<scene_geometry>> meshes;
+    std::vector<size_t> resource_start; /* in bin */
+
+    void open();
+    std::vector<size_t> free_list(const char *name);
+    size_t place(const char *list, std::vector<size_t> &free,
+                 gltf_document value);
+    void align(size_t to);
+    size_t add(const scene_array &data, int target, bool bounds);
+    scene_form form(const gltf_document &record) const;
+    scene_geometry &geometry(const gltf_document &record);
+    void primitive(gltf_document &p);
+    void primitives();
+    void drop_animations();
+    void missing_images(const std::vector<bool> &missing);
+    void resources();
+    void move_views();
+    void drop_marks();
+    void put_glb(const std::string &json, asset_bytes *out) const;
+};
+
+/* ---- reading the document ----------------------------------------------- */
+
+std::vector<size_t> writer::free_list(const char *name)
+{
+    std::vector<size_t> numbers;
+    const size_t size = doc.contains(name) ? doc.at(name).size() : 0;
+    const gltf_document root =
+        doc.value("extensions", gltf_document::object())
+            .value(GLTF_PROGRESSIVE, gltf_document::object());
+    for (const gltf_document &number :
+         root.value(name, gltf_document::array())) {
+        const size_t at = number.get<size_t>();
+        if (at >= size)
+            throw std::runtime_error("a free place is out of range");
+        numbers.insert(numbers.begin(), at);
+    }
+    return numbers;
+}
+
+void writer::open()
+{
+    const pmesh_scene_bytes text = pmesh_scene_document(scene);
+    gltf_source source = {};
+    asset unused = {};
+    asset_error error;
+
+    if (!text.data || text.arrived < text.size)
+        throw std::runtime_error("cut off before the scene's document");
+    if (!gltf_open(text.data, static_cast<size_t>(text.size), &source, &unused,
+                   &error))
+        throw std::runtime_error(std::string("the document is no glTF: ") +
+                                 error.what);
+    doc = gltf_document::parse(source.json, source.json + source.json_size);
+    /* Members of the root must not come or go from now on: references into an
+     * ordered document would not survive it. */
+    for (const char *list : { "accessors", "bufferViews", "buffers" })
+        if (!doc.contains(list))
+            doc[list] = gltf_document::array();
+    free_accessors = free_list("accessors");
+    free_views = free_list("bufferViews");
+}
+
+/* ---- new accessors ------------------------------------------------------ */
+
+size_t writer::place(const char *list, std::vector<size_t> &free,
+                     gltf_document value)
+{
+    if (free.empty()) {
+        doc[list].push_back(std::move(value));
+        return doc[list].size() - 1;
+    }
+    const size_t at = free.back();
+    free.pop_back();
+    doc[list][at] = std::move(value);
+    return at;
+}
+
+void writer::align(size_t to)
+{
+    bin.resize((bin.size() + to - 1) / to * to);
+}
+
+gltf_document numbers_of(const std::vector<float> &values)
+{
+    gltf_document list = gltf_document::array();
+    for (const float v : values)
+        list.push_back(static_cast<double>(v));
+    return list;
+}
+
+/* Puts data into BIN; the number of their accessor. */
+size_t writer::add(const scene_array &data, int target, bool bounds)
+{
+    static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
+    gltf_document view = { { "buffer", 0 } }, accessor;
+
+    align(4);
+    view["byteOffset"] = bin.size();
+    view["byteLength"] = data.bytes.size();
+    if (data.stride > 0)
+        view["byteStride"] = data.stride;
+    view["target"] = target;
+    bin.insert(bin.end(), data.bytes.begin(), data.bytes.end());
+    accessor["bufferView"] = place("bufferViews", free_views, std::move(view));
+    accessor["componentType"] = data.component_type;
+    if (data.normalised)
+        accessor["normalized"] = true;
+    accessor["count"] = data.count;
+    accessor["type"] = types[data.components - 1];
+    if (bounds) {
+        accessor["min"] = numbers_of(data.low);
+        accessor["max"] = numbers_of(data.high);
+    }
+    return place("accessors", free_accessors, std::move(accessor));
+}
+
+scene_form writer::form(const gltf_document &record) const
+{
+    static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
+    const std::string type = record.at("type").get<std::string>();
+    scene_form f{ record.at("channel").get<int>(), 0,
+                  record.value("componentType", 5126),
+                  record.value("normalized", false),
+                  record.value("exact", false) };
+    for (unsigned i = 0; i < 4; i++)
+        if (type == types[i])
+            f.components = i + 1;
+    return f;
+}
+
+scene_geometry &writer::geometry(const gltf_document &record)
+{
+    const auto number = record.at("mesh").get<uint32_t>();
+    auto &mesh = meshes[number];
+    if (!mesh)
+        mesh = std::make_unique<scene_geometry>(
+            pmesh_scene_mesh(scene, number), style.inflate);
+    return *mesh;
+}
+
+void writer::primitive(gltf_document &p)
+{
+    const gltf_document record = p["extensions"][GLTF_PROGRESSIVE];
+    scene_geometry &mesh = geometry(record);
+    std::map<std::string, scene_form> forms;
+
+    mesh.choose(record.at("material").get<uint32_t>());
+    for (const auto &[name, one] : record.at("attributes").items())
+        if (name != "POSITION")
+            forms[name] = form(one);
+    gltf_document attributes = {
+        { "POSITION", add(mesh.positions(), TARGET_VERTICES, true) }
+    };
+    for (const auto &[name, data] : mesh.attributes(forms))
+        attributes[name] = add(data, TARGET_VERTICES, false);
+    p["attributes"] = std::move(attributes);
+    p["indices"] = add(mesh.indices(), TARGET_INDICES, false);
+    for (const gltf_document &target :
+         record.value("targets", gltf_document::array())) {
+        gltf_document to = gltf_document::object();
+        for (const auto &[name, one] : target.items())
+            to[name] = add(mesh.differences(form(one)), TARGET_VERTICES,
+                           name == "POSITION");
+        p["targets"].push_back(std::move(to));
+    }
+    gltf_erase_extension(p, GLTF_PROGRESSIVE);
+}
+
+void writer::primitives()
+{
+    for (gltf_document &mesh : doc.at("meshes"))
+        for (gltf_document &p : mesh.at("primitives"))
+            if (p.contains("extensions") &&
+                p["extensions"].contains(GLTF_PROGRESSIVE))
+                primitive(p);
+}
+
+/* ---- resources ---------------------------------------------------------- */
+
+/* Without their data; their accessors become free places. */
+void writer::drop_animations()
+{
+    std::vector<bool> used;
+    asset_warn(notes, "the animations have not arrived and are left out");
+    for (const gltf_document &animation : doc["animations"])
+        for (const gltf_document &sampler : animation.at("samplers"))
+            for (const char *end : { "input", "output" }) {
+                const size_t at = sampler.at(end).get<size_t>();
+                if (at >= used.size())
+                    used.resize(at + 1);
+                used[at] = true;
+            }
+    doc.erase("animations");
+    for (size_t i = 0; i < used.size() && i < doc["accessors"].size(); i++)
+        if (used[i])
+            doc["accessors"][i] = { { "componentType", 5126 },
+                                    { "count", 1 },
+                                    { "type", "SCALAR" } };
+}
+
+/* Points the images at the pixel, whose view takes the place of theirs. */
+void writer::missing_images(const std::vector<bool> &missing)
+{
+    size_t count = 0;
+    for (gltf_document &image : doc["images"]) {
+        if (!image.contains("bufferView"))
+            continue;
+        gltf_document &view =
+            doc["bufferViews"].at(image["bufferView"].get<size_t>());
+        const size_t buffer = view.value("buffer", missing.size());
+        if (buffer >= missing.size() || !missing[buffer])
+            continue;
+        view = { { "buffer", buffer }, { "byteLength", sizeof pixel } };
+        image["mimeType"] = "image/png";
+        count++;
+    }
+    asset_warn(notes, "%zu images have not arrived and are one grey pixel",
+               count);
+}
+
+/* Moves each into BIN, or what stands for it. */
+void writer::resources()
+{
+    pmesh_scene_header header = {};
+    std::vector<bool> missing, image;
+    bool any = false, lacks_animation = false;
+
+    pmesh_scene_get_header(scene, &header);
+    missing.resize(header.resource_count);
+    image.resize(header.resource_count);
+    for (const gltf_document &one : doc.value("images", gltf_document::array()))
+        if (one.contains("bufferView")) {
+            const size_t buffer = doc.at("bufferViews")
+                                      .at(one["bufferView"].get<size_t>())
+                                      .value("buffer", missing.size());
+            if (buffer < image.size())
+                image[buffer] = true;
+        }
+    for (uint32_t i = 0; i < header.resource_count; i++) {
+        const pmesh_scene_bytes r = pmesh_scene_resource(scene, i);
+        missing[i] = r.size > 0 && (!r.data || r.arrived < r.size);
+        any = any || (missing[i] && image[i]);
+        lacks_animation = lacks_animation || (missing[i] && !image[i]);
+    }
+    if (lacks_animation && !doc.contains("animations"))
+        throw std::runtime_error("cut off before what is needed to show it");
+    if (lacks_animation)
+        drop_animations();
+    if (any)
+        missing_images(missing);
+    for (uint32_t i = 0; i < header.resource_count; i++) {
+        const pmesh_scene_bytes r = pmesh_scene_resource(scene, i);
+        align(8);
+        resource_start.push_back(bin.size());
+        if (!missing[i])
+            bin.insert(bin.end(), r.data, r.data + r.size);
+        else if (image[i])
+            bin.insert(bin.end(), pixel, pixel + sizeof pixel);
+        else
+            bin.resize(bin.size() + static_cast<size_t>(r.size));
+    }
+}
+
+/* Before the geometry's views are added: all that there are name resources. */
+void writer::move_views()
+{
+    for (gltf_document &view : doc["bufferViews"]) {
+        if (!view.is_object())
+            throw std::runtime_error("a view is no object");
+        if (!view.contains("buffer"))
+            continue;
+        const size_t start =
+            resource_start.at(view["buffer"].get<size_t>());
+        view["buffer"] = 0;
+        view["byteOffset"] = start + view.value("byteOffset", size_t{ 0 });
+    }
+}
+
+/* What is left of our marks: places that nothing took. */
+void writer::drop_marks()
+{
+    for (const size_t at : free_accessors)
+        doc["accessors"][at] = { { "componentType", 5126 },
+                                 { "count", 1 },
+                                 { "type", "SCALAR" } };
+    for (const size_t at : free_views)
+        doc["bufferViews"][at] = { { "buffer", 0 }, { "byteLength", 1 } };
+    gltf_erase_extension(doc, GLTF_PROGRESSIVE);
+}
+
+/* ---- the file ----------------------------------------------------------- */
+
+void put_u32(asset_bytes *out, size_t value)
+{
+    const uint8_t bytes[4] = { static_cast<uint8_t>(value),
+                               static_cast<uint8_t>(value >> 8),
+                               static_cast<uint8_t>(value >> 16),
+                               static_cast<uint8_t>(value >> 24) };
+    asset_put(out, bytes, sizeof bytes);
+}
+
+void writer::put_glb(const std::string &json, asset_bytes *out) const
+{
+    const size_t text = (json.size() + 3) / 4 * 4;
+    const uint64_t total = uint64_t{ 12 + 8 + 8 } + text + bin.size();
+
+    if (total > UINT32_MAX)
+        throw std::runtime_error("more than 4 GiB do not fit into a GLB");
+    asset_put(out, "glTF", 4);
+    put_u32(out, 2);
+    put_u32(out, static_cast<size_t>(total));
+    put_u32(out, text);
+    asset_put(out, "JSON", 4);
+    asset_put(out, json.data(), json.size());
+    asset_put(out, "   ", text - json.size());
+    put_u32(out, bin.size());
+    asset_put(out, "BIN\0", 4);
+    asset_put(out, bin.data(), bin.size());
+}
+
+std::string base64(const gltf_bytes &in)
+{
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnop"
+                                 "qrstuvwxyz0123456789+/";
+    std::string out;
+    for (size_t i = 0; i < in.size(); i += 3) {
+        uint32_t word = 0;
+        for (size_t k = 0; k < 3; k++)
+            word = word << 8 | (i + k < in.size() ? in[i + k] : 0u);
+        for (size_t k = 0; k < 4; k++)
+            out += i + k > in.size() ? '=' : digits[word >> (18 - 6 * k) & 63];
+    }
+    return out;
+}
+
+void writer::write(asset_bytes *out)
+{
+    open();
+    resources();
+    move_views();
+    primitives();
+    drop_marks();
+    align(4);
+    doc["buffers"] = { { { "byteLength", bin.size() } } };
+    if (!style.glb)
+        doc["buffers"][0]["uri"] =
+            "data:application/octet-stream;base64," + base64(bin);
+    if (style.glb) {
+        put_glb(doc.dump(), out);
+    } else {
+        const std::string json = doc.dump(2) + "\n";
+        asset_put(out, json.data(), json.size());
+    }
+    if (out->failed)
+        throw std::bad_alloc();
+}
+
+} // namespace
+
+bool scene_write(pmesh_scene *scene, scene_style style, asset_bytes *out,
+                 asset *notes, asset_error *error)
+{
+    try {
+        writer(scene, style, notes).write(out);
+        return true;
+    } catch (const std::bad_alloc &) {
+        return asset_fail(error, "", "out of memory");
+    } catch (const gltf_document::exception &) {
+        return asset_fail(error, "", "the document is no glTF of a scene");
+    } catch (const std::runtime_error &e) {
+        return asset_fail(error, "", "%s", e.what());
+    } catch (...) {
+        return asset_fail(error, "", "the document is unreadable");
+    }
+}

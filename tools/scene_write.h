@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * scene_write.h - what a scene shows, as glTF: its document with the accessors
+ * of the visible level put in.
+ */
+#ifndef SCENE_WRITE_H
+#define SCENE_WRITE_H
+
+#include <stdbool.h>
+
+#include "decoder/pmesh_scene.h"
+#include "tools/asset.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct scene_style {
+    bool glb;     /* else .gltf, with a data URI */
+    bool inflate; /* coarse levels, see pmesh_decoder_copy_inflated() */
+} scene_style;
+
+/*
+ * Appends a glTF file to `out`. Of a scene that has not
+ * arrived whole, images that are missing become one grey pixel and missing
+ * animations are left out: lines in notes->warnings say so. Fails while the
+ * document, a base mesh or what nothing can be shown without is missing, and
+ * for documents that are no glTF.
+ */
+bool scene_write(pmesh_scene *scene, scene_style style, asset_bytes *out,
+                 asset *notes, asset_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
