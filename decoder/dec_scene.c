@@ -10,10 +10,11 @@
 pmesh_status pmesh_scene_create(pmesh_scene **out,
                                 const pmesh_scene_config *config)
 {
+    static const pmesh_scene_config plain = { .skip_resources = 0 };
     if (!out)
         return PMESH_E_ARGUMENT;
     *out = NULL;
-    pmesh_scene_config c = config ? *config : (pmesh_scene_config){ 0 };
+    pmesh_scene_config c = config ? *config : plain;
     if (!c.decoder.allocator.alloc != !c.decoder.allocator.release)
         return PMESH_E_ARGUMENT;
     c.decoder.allocator = pmesh_allocator_resolve(c.decoder.allocator);
@@ -159,7 +160,7 @@ static void sift(pmesh_scene *s, uint32_t at, uint32_t count)
 }
 
 /* All base meshes; returns how many there are, in the heap. */
-static uint32_t begin(pmesh_scene *s, uint64_t *faces)
+static uint32_t take_bases(pmesh_scene *s, uint64_t *faces)
 {
     uint32_t count = 0;
 
@@ -199,7 +200,7 @@ static bool next_step(const dec_scene_mesh *mesh,
 static void share(pmesh_scene *s, const pmesh_scene_target *target)
 {
     uint64_t faces;
-    uint32_t count = begin(s, &faces);
+    uint32_t count = take_bases(s, &faces);
 
     while (count > 0) {
         const uint32_t worst = s->heap[0];
@@ -249,7 +250,7 @@ pmesh_status pmesh_scene_refine(pmesh_scene *s,
                                 const pmesh_scene_target *target,
                                 pmesh_scene_shown *shown)
 {
-    static const pmesh_scene_target everything = { 0 };
+    static const pmesh_scene_target everything = { .faces = 0 };
     pmesh_scene_shown unwanted;
 
     if (!s->has_header)

@@ -53,11 +53,12 @@ pmesh_status dec_scene_begin(pmesh_scene *s)
 
 /* ---- the header --------------------------------------------------------- */
 
-/* Gives `size` bytes of the block to *array, aligned; NULL block: measures. */
-static void bind(uint8_t *block, uint64_t *at, void **array, uint64_t size)
+/* The next `size` bytes of the block, aligned; of no block, their measure. */
+static void *carve(uint8_t *block, uint64_t *at, uint64_t size)
 {
-    *array = block ? block + *at : NULL;
+    void *array = block ? block + *at : NULL;
     *at += (size + 15) / 16 * 16;
+    return array;
 }
 
 /* The arrays whose lengths the head tells; resources follow once their sizes
@@ -67,22 +68,15 @@ static uint64_t bind_arrays(pmesh_scene *s, uint8_t *block, uint64_t **sizes)
     const uint64_t meshes = s->head.mesh_count;
     const uint64_t resources = s->head.resource_count;
     uint64_t at = 0;
-    void *p[7];
 
-    bind(block, &at, &p[0], meshes * sizeof *s->mesh);
-    bind(block, &at, &p[1], meshes * sizeof *s->stream);
-    bind(block, &at, &p[2], meshes * sizeof *s->heap);
-    bind(block, &at, &p[3], resources * sizeof *s->resource);
-    bind(block, &at, &p[4], resources * sizeof **sizes);
-    bind(block, &at, &p[5], s->head.chunk_size);
-    bind(block, &at, &p[6], s->head.document_size);
-    s->mesh = p[0];
-    s->stream = p[1];
-    s->heap = p[2];
-    s->resource = p[3];
-    *sizes = p[4];
-    s->payload = p[5];
-    s->document = (dec_scene_part){ p[6], s->head.document_size, 0 };
+    s->mesh = carve(block, &at, meshes * sizeof *s->mesh);
+    s->stream = carve(block, &at, meshes * sizeof *s->stream);
+    s->heap = carve(block, &at, meshes * sizeof *s->heap);
+    s->resource = carve(block, &at, resources * sizeof *s->resource);
+    *sizes = carve(block, &at, resources * sizeof **sizes);
+    s->payload = carve(block, &at, s->head.chunk_size);
+    s->document.data = carve(block, &at, s->head.document_size);
+    s->document.size = s->head.document_size;
     return at;
 }
 
@@ -117,13 +111,14 @@ static pmesh_status allocate(pmesh_scene *s, pmesh_cursor in,
     if (most > s->memory_left || most > SIZE_MAX)
         return dec_scene_fail(s, PMESH_E_LIMIT,
                               "the scene is larger than the memory limit");
-    s->block = pmesh_alloc(&s->allocator, (size_t)most, 1);
-    if (!s->block)
+    uint8_t *block = pmesh_alloc(&s->allocator, (size_t)most, 1);
+    if (!block)
         return dec_scene_fail(s, PMESH_E_MEMORY, "no memory for the scene");
+    s->block = block;
     s->block_size = most;
     s->memory_left -= most;
-    bind_arrays(s, s->block, sizes);
-    memset(s->block, 0, (size_t)arrays);
+    bind_arrays(s, block, sizes);
+    memset(block, 0, (size_t)arrays);
     return PMESH_OK;
 }
 
@@ -143,7 +138,8 @@ static pmesh_status take_header(pmesh_scene *s)
     if (status != PMESH_OK)
         return dec_scene_fail(s, status, rule);
     uint64_t *unused;
-    uint8_t *at = (uint8_t *)s->block + bind_arrays(s, s->block, &unused);
+    uint8_t *at = (uint8_t *)s->block;
+    at += bind_arrays(s, at, &unused);
     for (uint32_t i = 0; i < s->head.resource_count; i++) {
         s->resource[i].size = sizes[i];
         s->resource[i].data = s->config.skip_resources ? NULL : at;

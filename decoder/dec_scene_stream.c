@@ -13,7 +13,7 @@ enum { MAX_START = 1 + 5 }; /* type and a varint below 2^35 */
 
 pmesh_status pmesh_scene_probe(const void *data, size_t size)
 {
-    const uint8_t *bytes = data;
+    const uint8_t *bytes = (const uint8_t *)data;
     const size_t n = size < PMESH_SIGNATURE_SIZE ? size : PMESH_SIGNATURE_SIZE;
 
     if (n > 0 && memcmp(bytes, PMESH_SIGNATURE, n) != 0)
@@ -127,7 +127,7 @@ static pmesh_status step(pmesh_scene *s, const uint8_t **data, size_t *size)
 
 pmesh_status pmesh_scene_feed(pmesh_scene *s, const void *data, size_t size)
 {
-    const uint8_t *next = data;
+    const uint8_t *next = (const uint8_t *)data;
     if (!s || (!data && size > 0))
         return PMESH_E_ARGUMENT;
     while (s->error.status >= 0 && s->stage != DEC_SCENE_END && size > 0)

@@ -13,7 +13,8 @@
 set -eu
 folder=$1
 version=$2
-public="format/pmesh.h decoder/pmesh_decode.h decoder/pmesh_plan.h"
+public="format/pmesh.h decoder/pmesh_decode.h decoder/pmesh_plan.h
+    decoder/pmesh_scene.h"
 mkdir -p "$folder"
 
 about() {
