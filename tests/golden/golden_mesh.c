@@ -139,10 +139,12 @@ static void put_piece(shape_mesh *s, uint32_t kind, uint32_t *seed)
     const uint32_t v = (uint32_t)in->vertex_count;
     const double far = 1 + shape_random(seed, 400) / 10.0;
     const double turns = shape_random(seed, 1000) / 1000.0;
-    for (uint32_t i = 0; i < count[kind]; i++)
-        put_vertex(in, s->positions, far + shape_random(seed, 100) / 50.0,
-                   turns + shape_random(seed, 100) / 2000.0,
-                   far / 2 + shape_random(seed, 100) / 50.0);
+    for (uint32_t i = 0; i < count[kind]; i++) {
+        const double radius = far + shape_random(seed, 100) / 50.0;
+        const double angle = turns + shape_random(seed, 100) / 2000.0;
+        const double height = far / 2 + shape_random(seed, 100) / 50.0;
+        put_vertex(in, s->positions, radius, angle, height);
+    }
     put_face(in, s->indices, v, v + 1, v + 2);
     if (kind == 1)
         put_face(in, s->indices, v + 1, v, v + 2);
@@ -162,8 +164,10 @@ static void make_leaves(shape_mesh *s, uint32_t n)
 {
     uint32_t seed = 11;
     s->input.vertex_count = s->input.face_count = 0;
-    for (uint32_t i = 0; i < n * n / 5; i++)
-        put_piece(s, shape_random(&seed, 4), &seed);
+    for (uint32_t i = 0; i < n * n / 5; i++) {
+        const uint32_t kind = shape_random(&seed, 4);
+        put_piece(s, kind, &seed);
+    }
 }
 
 void golden_mesh_make(golden_mesh *m, int kind, uint32_t size)
