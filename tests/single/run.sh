@@ -15,7 +15,7 @@ build() {
     program=$1
     shift
     "$@" -Wall -Wextra -Wpedantic -Werror -O1 -ffp-contract=off -I"$single" \
-        tools/example/upload.c "$single/pmesh_decode.c" -o "$dir/$program"
+        tests/single/upload.c "$single/pmesh_decode.c" -o "$dir/$program"
 }
 
 # Each golden file, whole and up to 60 faces, as `program` shows it.
