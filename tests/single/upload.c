@@ -3,7 +3,7 @@
  * upload.c - how an engine shows a mesh that sharpens while it loads. Draws
  * nothing: prints what it would send to the graphics card.
  *
- *   cc upload.c pmesh_decode.c -o upload && ./upload bunny.pmesh 5000
+ *   cc -I. upload.c pmesh_decode.c -o upload && ./upload bunny.pmesh 5000
  *
  * Buffers are made once, as large as the header says, and bound: after each
  * piece of the file the decoder writes what changed into them and names the
@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pmesh_decode.h"
+#include <pmesh_decode.h>
 
 enum { PIECE = 16384 }; /* bytes that arrive at a time */
 
