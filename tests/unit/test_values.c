@@ -46,8 +46,8 @@ TEST(the_code_of_a_surface_is_that_of_its_normal)
     for (int i = 0; i < 20000; i++) {
         int64_t v[3];
         for (int k = 0; k < 3; k++)
-            v[k] = ((int64_t)shape_random(&seed, 20001) - 10000)
-                   << (i % 40);
+            v[k] = ((int64_t)shape_random(&seed, 20001) - 10000) *
+                   ((int64_t)1 << i % 40);
         const float f[3] = { (float)v[0], (float)v[1], (float)v[2] };
         for (int mirrored = 0; mirrored < 2; mirrored++) {
             uint16_t code[2];
