@@ -100,16 +100,31 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     return k.used;
 }
 
+static bool may_be_tangent(const pmesh_attribute *a)
+{
+    return a->kind == PMESH_GENERIC && a->components == 4 &&
+           a->minimum[0] < 0 && a->minimum[1] < 0 && a->minimum[2] < 0;
+}
+
 void pmesh_codec_limit_values(pmesh_codec *c, const pmesh_attribute *attributes,
                               uint32_t count)
 {
-    uint32_t component = 0;
+    uint32_t component = 0, map = PMESH_NONE, normal = PMESH_NONE;
     for (uint32_t i = 0; i < count; i++) {
-        const uint32_t n = pmesh_coded_components(&attributes[i]);
-        c->channel[i] =
-            (pmesh_channel){ component, n, attributes[i].kind == PMESH_NORMAL };
+        const pmesh_attribute *a = &attributes[i];
+        const uint32_t n = pmesh_coded_components(a);
+        if (a->kind == PMESH_TEXCOORD && map == PMESH_NONE)
+            map = i;
+        if (a->kind == PMESH_NORMAL && normal == PMESH_NONE)
+            normal = i;
+        c->channel[i] = (pmesh_channel){
+            .first = component, .count = n, .normal = a->kind == PMESH_NORMAL,
+            .tangent = may_be_tangent(a) && map != PMESH_NONE &&
+                       normal != PMESH_NONE
+        };
         for (uint32_t k = 0; k < n; k++)
-            c->component_max[component++] =
-                ((uint32_t)1 << attributes[i].bits) - 1;
+            c->component_max[component++] = ((uint32_t)1 << a->bits) - 1;
     }
+    c->tangent_map = map;
+    c->tangent_normal = normal;
 }

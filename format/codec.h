@@ -101,6 +101,7 @@ static inline uint64_t pmesh_block_faces(const pmesh_codec_sizes *s)
 typedef struct pmesh_channel {
     uint32_t first, count;
     bool normal;
+    bool tangent; /* see pmesh_codec_limit_values() */
 } pmesh_channel;
 
 typedef struct pmesh_codec {
@@ -110,6 +111,7 @@ typedef struct pmesh_codec {
     int32_t bounds[3]; /* largest coordinate of each axis */
     uint32_t component_max[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS];
     pmesh_channel channel[PMESH_MAX_ATTRIBUTES];
+    uint32_t tangent_map, tangent_normal; /* channels that tangents go by */
     pmesh_channel_models *channel_models; /* per attribute */
     pmesh_value_models *value_models;     /* per component */
     const char *rule; /* what a negative status was about */
@@ -160,7 +162,9 @@ typedef struct pmesh_codec {
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *sizes,
                           void *block);
 
-/* Sets component_max and channel from the attributes. */
+/* Sets component_max and channel from the attributes. A generic one of four
+ * components, the first three of which take negative values too, is taken for a
+ * tangent if a normal and texture coordinates come before it. */
 void pmesh_codec_limit_values(pmesh_codec *c, const pmesh_attribute *attributes,
                               uint32_t count);
 

@@ -50,3 +50,15 @@ void pmesh_octant_fold(const int64_t v[3], int32_t centre, int32_t fraction,
     code[0] = v[0] < 0 ? one - a : one + a;
     code[1] = v[1] < 0 ? one - b : one + b;
 }
+
+void pmesh_octant_unfold(const uint16_t code[2], int32_t centre, int32_t v[3])
+{
+    const int32_t a = code[0] - centre, b = code[1] - centre;
+    v[0] = a;
+    v[1] = b;
+    v[2] = centre - size_of(a) - size_of(b);
+    if (v[2] >= 0)
+        return;
+    v[0] = a < 0 ? size_of(b) - centre : centre - size_of(b);
+    v[1] = b < 0 ? size_of(a) - centre : centre - size_of(a);
+}

@@ -24,4 +24,7 @@ int32_t pmesh_octant_below(int32_t centre, const uint16_t code[2]);
 void pmesh_octant_fold(const int64_t v[3], int32_t centre, int32_t fraction,
                        bool mirrored, int64_t code[2]);
 
+/* The vector of a code, not normalised; never 0. */
+void pmesh_octant_unfold(const uint16_t code[2], int32_t centre, int32_t v[3]);
+
 #endif

@@ -7,6 +7,7 @@
 #include "format/residual.h"
 #include "format/star.h"
 #include "format/surround.h"
+#include "format/tangent.h"
 
 enum {
     FRACTION_BITS = 4, /* of predictions */
@@ -33,7 +34,8 @@ typedef struct subject {
     uint32_t w, sibling; /* PMESH_NONE: has none */
     bool mirrored;       /* codes of normals are seen from below */
     int32_t centre;      /* of codes of normals */
-    int64_t shape[2];    /* the code of the surface's normal */
+    bool shaped;         /* the surface tells something about the first */
+    int64_t shape[3];    /* components: in 1/FRACTION */
     int64_t error[2];    /* of the components before */
     int32_t neighbour[PMESH_MAX_RING][PMESH_MAX_COMPONENTS];
 } subject;
@@ -70,18 +72,39 @@ static void look_at(const subject *s, const uint16_t *value, int32_t *out)
 }
 
 /* Normals are seen from the side where most neighbours are. */
-static void look_around(subject *s)
+static void look_at_normal(subject *s)
 {
     const pmesh_surround *a = s->around;
     int64_t below = 0, normal[3];
-    s->mirrored = false;
-    if (s->channel->normal) {
-        for (uint32_t i = 0; i < a->count; i++)
-            below += pmesh_octant_below(s->centre, stored(s, a->wedge[i]));
-        s->mirrored = below > 0;
-        pmesh_fan_normal(&s->c->mesh, s->c->wedge_corner[s->w], normal);
-        pmesh_octant_fold(normal, s->centre, FRACTION, s->mirrored, s->shape);
+    for (uint32_t i = 0; i < a->count; i++)
+        below += pmesh_octant_below(s->centre, stored(s, a->wedge[i]));
+    s->mirrored = below > 0;
+    pmesh_fan_normal(&s->c->mesh, s->c->wedge_corner[s->w], normal);
+    pmesh_octant_fold(normal, s->centre, FRACTION, s->mirrored, s->shape);
+    s->shaped = true;
+}
+
+/* Tangents are coded within about -1 .. 1. */
+static void look_at_tangent(subject *s)
+{
+    int64_t tangent[3];
+    pmesh_tangent(s->c, s->w, tangent);
+    s->shaped = tangent[0] || tangent[1] || tangent[2];
+    for (int k = 0; k < 3; k++) {
+        const int64_t half =
+            (int64_t)s->c->component_max[s->channel->first] * FRACTION / 2;
+        s->shape[k] = half + tangent[k] * half / (1 << PMESH_TANGENT_BITS);
     }
+}
+
+static void look_around(subject *s)
+{
+    const pmesh_surround *a = s->around;
+    s->mirrored = s->shaped = false;
+    if (s->channel->normal)
+        look_at_normal(s);
+    if (s->channel->tangent && a->count)
+        look_at_tangent(s);
     for (uint32_t i = 0; i < a->count; i++)
         look_at(s, stored(s, a->wedge[i]), s->neighbour[i]);
 }
@@ -104,7 +127,7 @@ static void find_terms(const subject *s, uint32_t k, guess *g)
     g->spread /= n;
     g->term[AFFINE] = (affine >> (WEIGHT_BITS - FRACTION_BITS)) - g->mean;
     g->term[CLOSE] = (close >> (WEIGHT_BITS - FRACTION_BITS)) - g->mean;
-    if (s->channel->normal)
+    if (s->shaped && k < 3)
         g->term[SHAPE] = s->shape[k] - g->mean;
     g->term[BEFORE] = s->error[0];
     g->term[BEFORE_THAT] = s->error[1];

@@ -404,6 +404,7 @@ typedef struct ref_near {
 int64_t ref_read_near(ref *r, const ref_near *at);
 int ref_how_far(int64_t coordinate, const ref_near *at);
 int64_t ref_len(ref_vec v);
+int64_t ref_isqrt(int64_t v);
 void ref_read_positions(ref *r);
 
 /* 6.6. */

@@ -37,7 +37,7 @@ int64_t ref_len(ref_vec v)
     return m + ref_shift(sum - m, 2) + ref_shift(sum - m, 3);
 }
 
-static int64_t isqrt(int64_t v)
+int64_t ref_isqrt(int64_t v)
 {
     int64_t root = 0;
     for (int64_t step = (int64_t)1 << 31; step > 0; step /= 2)
@@ -92,7 +92,7 @@ static void set_normal(frame *m)
     const int drop = ref_bits(ref_or(sum)) - 15;
     if (drop > 0)
         sum = ref_vshift(sum, drop);
-    const int64_t length = isqrt(ref_dot(sum, sum));
+    const int64_t length = ref_isqrt(ref_dot(sum, sum));
     if (length == 0) {
         REF_SEEN(normal_0);
         return;

@@ -6,8 +6,10 @@
 typedef struct subject {
     uint32_t w;
     int attribute, first, count; /* its components */
-    bool normal, mirrored;
-    int64_t c, shape[2];
+    bool normal, tangent, mirrored;
+    int map, map_normal; /* the attributes that a tangent goes by */
+    bool shaped;
+    int64_t c, shape[3];
 } subject;
 
 typedef struct neighbours {
@@ -187,7 +189,105 @@ static void look(const ref *r, subject *s, const neighbours *a)
     s->mirrored = below > 0;
     if (s->mirrored)
         REF_SEEN(mirrored);
+    s->shaped = true;
     find_shape(r, s);
+}
+
+/* ---- tangents ----------------------------------------------------------- */
+
+static int first_component(const ref *r, int attribute)
+{
+    int first = 0;
+    for (int i = 0; i < attribute; i++)
+        first += r->header.attribute[i].coded;
+    return first;
+}
+
+/* Finds what a tangent goes by; false if it is none. */
+static bool is_tangent(const ref *r, subject *s, int attribute)
+{
+    const ref_attribute *a = &r->header.attribute[attribute];
+    s->map = s->map_normal = -1;
+    for (int i = attribute; i-- > 0;) {
+        if (r->header.attribute[i].kind == 0)
+            s->map_normal = i;
+        if (r->header.attribute[i].kind == 1)
+            s->map = i;
+    }
+    return a->kind == 3 && a->components == 4 && a->minimum[0] < 0 &&
+           a->minimum[1] < 0 && a->minimum[2] < 0 && s->map >= 0 &&
+           s->map_normal >= 0;
+}
+
+static ref_vec position_of(const ref *r, uint32_t h)
+{
+    return r->vertex[r->edge[h].vertex].at;
+}
+
+static ref_vec face_tangent(const ref *r, const subject *s, uint32_t h)
+{
+    const uint32_t wn = r->edge[ref_next(h)].wedge;
+    const uint32_t wp = r->edge[ref_prev(h)].wedge;
+    if (wn >= s->w || wp >= s->w)
+        return (ref_vec){ { 0 } };
+    const int first = first_component(r, s->map);
+    const uint16_t *at = r->wedge[s->w].value + first;
+    const uint16_t *next = r->wedge[wn].value + first;
+    const uint16_t *prev = r->wedge[wp].value + first;
+    const int64_t a = next[0] - at[0], b = next[1] - at[1];
+    const int64_t e = prev[0] - at[0], d = prev[1] - at[1];
+    const ref_vec p = ref_sub(position_of(r, ref_next(h)), position_of(r, h));
+    const ref_vec q = ref_sub(position_of(r, ref_prev(h)), position_of(r, h));
+    const ref_vec t = ref_sub(ref_times(p, d), ref_times(q, b));
+    return a * d < b * e ? ref_times(t, -1) : t;
+}
+
+static ref_vec normal_of(const ref *r, const subject *s)
+{
+    const uint16_t *code =
+        r->wedge[s->w].value + first_component(r, s->map_normal);
+    const int64_t c =
+        (1 << (r->header.attribute[s->map_normal].bits - 1)) - 1;
+    const int64_t a = code[0] - c, b = code[1] - c;
+    const int64_t z = c - absolute(a) - absolute(b);
+    int64_t xy[2] = { code[0], code[1] };
+    if (z < 0) {
+        REF_SEEN(tangent_below);
+        mirror(c, xy);
+    }
+    return (ref_vec){ { xy[0] - c, xy[1] - c, z } };
+}
+
+static ref_vec scaled_to(ref_vec v, int bits)
+{
+    return ref_vscale(v, bits - ref_bits(1 | ref_or(v)));
+}
+
+static void find_tangent(const ref *r, subject *s)
+{
+    const uint32_t first = r->wedge[s->w].corner;
+    const int64_t half = 8 * largest(r, s->first);
+    ref_vec t = { 0 };
+    uint32_t h = first;
+    int count = 0;
+    do {
+        t = ref_add(t, face_tangent(r, s, h));
+        h = ref_left(r, h);
+        count++;
+    } while (h != REF_NONE && h != first && r->edge[h].wedge == s->w &&
+             count < 48);
+    t = scaled_to(t, 20);
+    const ref_vec N = normal_of(r, s);
+    t = ref_sub(t, ref_over(ref_times(N, ref_dot(N, t)), ref_dot(N, N)));
+    t = scaled_to(t, 15);
+    const int64_t L = ref_isqrt(ref_dot(t, t));
+    s->shaped = L != 0;
+    if (!s->shaped) {
+        REF_SEEN(tangent_0);
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        s->shape[k] = half + t.c[k] * 16384 / L * half / 16384;
 }
 
 /* ---- components --------------------------------------------------------- */
@@ -240,7 +340,7 @@ static void find_terms(const ref *r, const subject *s, const neighbours *a,
     p->spread /= a->n;
     p->t[0].c[0] = ref_shift(affine, 12) - p->mean;
     p->t[1].c[0] = ref_shift(close, 12) - p->mean;
-    if (s->normal)
+    if (s->shaped && k < 3)
         p->t[2].c[0] = s->shape[k] - p->mean;
     p->t[3].c[0] = off[0];
     p->t[4].c[0] = off[1];
@@ -347,9 +447,13 @@ static void read_attribute(ref *r, subject *s, const neighbours *a)
 {
     int64_t value[REF_COMPONENTS], off[2] = { 0, 0 };
     int far = 0;
-    s->mirrored = false;
+    s->mirrored = s->shaped = false;
     if (s->normal)
         look(r, s, a);
+    if (s->tangent && a->n > 0) {
+        REF_SEEN(tangent);
+        find_tangent(r, s);
+    }
     for (int k = 0; k < s->count; k++)
         value[k] = read_component(r, s, a, k, off, &far);
     if (s->mirrored) {
@@ -374,6 +478,7 @@ static void read_wedge(ref *r, uint32_t w)
         s.first += s.count;
         s.count = r->header.attribute[i].coded;
         s.normal = r->header.attribute[i].kind == 0;
+        s.tangent = is_tangent(r, &s, i);
         s.c = (1 << (r->header.attribute[i].bits - 1)) - 1;
         const bool copied = read_copy(r, &s, before);
         if (!copied)
