@@ -8,11 +8,15 @@
  *     quadric * Q(place) + length * e^2 |child - parent|^2
  *                        + uneven * e^2 |child - mean of its ring|^2
  *
- * with e the mean edge of the mesh at the start of the batch.
+ * with e the mean edge of the mesh at the start of the batch. Of a guided mesh
+ * the first term is made of quadrics times their factors, the others are times
+ * the mean factor of the pair; constraints move the place, whatever it costs,
+ * but only if the best one is not good enough for them.
  */
 #ifndef ENC_CANDIDATE_H
 #define ENC_CANDIDATE_H
 
+#include "encoder/enc_guide.h"
 #include "encoder/enc_star.h"
 
 /* Weights of the three terms. */
@@ -34,13 +38,22 @@ typedef struct enc_pricing {
     enc_planes *planes; /* per vertex: its quadric, about its position ... */
     enc_moved *moved;   /* ... NULL with PMESH_MEMORYLESS */
     float *unevenness;  /* per vertex: |v - mean of its ring|^2 */
+    float *factor;      /* per vertex, as in enc_guide; or NULL */
+    enc_quadric *pull;  /* likewise, about its position */
+    uint8_t *pulled;    /* whether there is any */
+    const uint8_t *lock;
 } enc_pricing;
+
+/* Places this close to what constraints ask for, as an offer's pull, are as
+ * good as any: a quarter of a step. */
+#define ENC_CONTENT (1.0 / 16)
 
 typedef struct enc_offer {
     int32_t place[3]; /* where the parent will be */
     double cost;
     double quadric;  /* the part of it that is Q(place) */
     double distance; /* squared, in steps: the quadric's mean at the place */
+    double pull;     /* mean squared distance from the constraints, in steps */
 } enc_offer;
 
 pmesh_status enc_pricing_create(const enc_mesh *mesh,
@@ -54,7 +67,7 @@ void enc_pricing_begin(enc_pricing *pricing, const enc_surface *s,
                        enc_taste taste, bool first_time);
 
 /* From the quadrics at the start of the batch; cheap. With PMESH_OPTIMAL the
- * place is not on the grid yet. Only cost and quadric are filled in. */
+ * place is not on the grid yet. Filled in are cost, quadric and pull. */
 enc_offer enc_pricing_estimate(const enc_pricing *pricing, const enc_surface *s,
                                const enc_pair *pair);
 

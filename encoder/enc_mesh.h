@@ -31,6 +31,8 @@
 
 #define ENC_NONE UINT32_MAX
 
+typedef struct enc_guide enc_guide;
+
 typedef struct enc_mesh {
     pmesh_allocator allocator;
     pmesh_grid grid;
@@ -56,6 +58,8 @@ typedef struct enc_mesh {
     uint32_t value_count;   /* sum of pmesh_coded_components() */
     uint32_t attribute_count;
     pmesh_attribute attribute[PMESH_MAX_ATTRIBUTES];
+
+    enc_guide *guide; /* enc_guide.h; NULL: nobody asked for anything */
 } enc_mesh;
 
 /*
