@@ -46,7 +46,16 @@ pmesh_status enc_pricing_create(const enc_mesh *mesh,
     const pmesh_allocator *a = &mesh->allocator;
 
     *out = (enc_pricing){ .metric = config->metric,
-                          .placement = config->placement };
+                          .placement = config->placement,
+                          .rule = { .cost = config->cost,
+                                    .hook = config->cost_hook,
+                                    .user = config->cost_user,
+                                    .unit = mesh->grid.step } };
+    memcpy(out->rule.camera, config->camera, sizeof config->camera);
+    memcpy(out->rule.origin, mesh->grid.origin, sizeof out->rule.origin);
+    const pmesh_status status = enc_looks_create(mesh, &out->looks);
+    if (status != PMESH_OK)
+        return status;
     out->planes = pmesh_alloc(a, mesh->vertex_count, sizeof *out->planes);
     if (config->metric == PMESH_ACCUMULATED)
         out->moved =
@@ -71,6 +80,7 @@ void enc_pricing_destroy(const enc_mesh *mesh, enc_pricing *p)
     pmesh_release(a, p->factor, mesh->vertex_count, sizeof *p->factor);
     pmesh_release(a, p->pull, mesh->vertex_count, sizeof *p->pull);
     pmesh_release(a, p->pulled, mesh->vertex_count, sizeof *p->pulled);
+    enc_looks_destroy(mesh, &p->looks);
     *p = (enc_pricing){ 0 };
 }
 
@@ -119,6 +129,7 @@ void enc_pricing_begin(enc_pricing *p, const enc_surface *s, enc_taste taste,
     double sum = 0;
 
     p->taste = taste;
+    enc_looks_begin(&p->looks, s);
     if (first_time || p->metric == PMESH_MEMORYLESS)
         enc_star_all_planes(s, p->planes);
     for (uint32_t v = 0; v < s->mesh->vertex_count; v++) {
@@ -132,7 +143,7 @@ void enc_pricing_begin(enc_pricing *p, const enc_surface *s, enc_taste taste,
     p->edge_square = sum / (3.0 * s->face_count);
 }
 
-/* Two quadrics of both ends about the midpoint; `half` of the edge. */
+/* The quadrics of both ends about the midpoint, and half of the edge. */
 static void sum_about_midpoint(const enc_quadric *child,
                                const enc_quadric *parent, const double half[3],
                                enc_quadric *sum)
@@ -142,21 +153,6 @@ static void sum_about_midpoint(const enc_quadric *child,
     memset(sum, 0, sizeof *sum);
     enc_quadric_add(sum, child, half);
     enc_quadric_add(sum, parent, back);
-}
-
-/* The same times the factors of the ends. */
-static void sum_weighted(const enc_pricing *p, const enc_pair *pair,
-                         const enc_quadric *child, const enc_quadric *parent,
-                         const double half[3], enc_quadric *sum)
-{
-    if (p->factor) {
-        enc_quadric heavy[2] = { *child, *parent };
-        scale(&heavy[0], (double)p->factor[pair->child]);
-        scale(&heavy[1], (double)p->factor[pair->parent]);
-        sum_about_midpoint(&heavy[0], &heavy[1], half, sum);
-    } else {
-        sum_about_midpoint(child, parent, half, sum);
-    }
 }
 
 /* True if x is close enough to the midpoint to be trusted. */
@@ -179,6 +175,21 @@ static void best_of_three(const enc_quadric *q, const double half[3],
             memcpy(x, y, sizeof y);
         }
     }
+}
+
+static bool is_pulled(const enc_pricing *p, const enc_pair *pair)
+{
+    return p->pull && (p->pulled[pair->child] || p->pulled[pair->parent]);
+}
+
+/* The constraints of both ends about the midpoint; none is all zero. */
+static void sum_pulls(const enc_pricing *p, const enc_pair *pair,
+                      const double half[3], enc_quadric *sum)
+{
+    sum->weight = 0;
+    if (is_pulled(p, pair))
+        sum_about_midpoint(&p->pull[pair->child], &p->pull[pair->parent], half,
+                           sum);
 }
 
 static double pull_at(const enc_quadric *pull, const double x[3])
@@ -230,58 +241,103 @@ static bool parent_moves(const enc_pricing *p, const enc_surface *s,
 static double regularity(const enc_pricing *p, const enc_pair *pair,
                          double edge_square)
 {
-    const double cost =
-        p->edge_square * (p->taste.length * edge_square +
-                          p->taste.uneven * p->unevenness[pair->child]);
-    return p->factor ? cost * 0.5 * (factor_of(p, pair->child) +
-                                     factor_of(p, pair->parent))
-                     : cost;
+    return p->edge_square * (p->taste.length * edge_square +
+                             p->taste.uneven * p->unevenness[pair->child]);
 }
 
-static bool is_pulled(const enc_pricing *p, const enc_pair *pair)
+/* Of what is no quadric, which has its factors already. */
+static double mean_factor(const enc_pricing *p, const enc_pair *pair)
 {
-    return p->pull && (p->pulled[pair->child] || p->pulled[pair->parent]);
+    return 0.5 * (factor_of(p, pair->child) + factor_of(p, pair->parent));
 }
 
-/* The constraints of both ends about the midpoint; none is all zero. */
-static void sum_pulls(const enc_pricing *p, const enc_pair *pair,
-                      const double half[3], enc_quadric *sum)
+/* Of a pair whose parent goes to `middle` + x. */
+static double cost_of(const enc_pricing *p, const enc_surface *s,
+                      const enc_pair *pair, const double middle[3],
+                      const double x[3], const enc_offer *offer)
 {
-    sum->weight = 0;
-    if (is_pulled(p, pair))
-        sum_about_midpoint(&p->pull[pair->child], &p->pull[pair->parent], half,
-                           sum);
+    const uint32_t ends[2] = { pair->parent, pair->child };
+    const uint32_t *source = s->mesh->source;
+    double at[2][3];
+    enc_cost_pair told = {
+        .kept = source ? source[pair->parent] : pair->parent,
+        .gone = source ? source[pair->child] : pair->child,
+        .ends = { at[0], at[1] },
+        .quadric = offer->quadric,
+        .distance = offer->distance,
+    };
+
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 2; k++)
+            at[k][i] = s->position[ends[k]][i];
+        told.middle[i] = middle[i];
+        told.half[i] = at[1][i] - middle[i];
+        told.place[i] = middle[i] + x[i];
+    }
+    if (p->rule.cost == PMESH_COST_LENGTH || p->rule.cost == PMESH_COST_CAMERA)
+        return mean_factor(p, pair) * enc_cost(&p->rule, &told);
+    if (p->rule.cost != PMESH_COST_QUADRIC)
+        return enc_cost(&p->rule, &told);
+    return p->taste.quadric * offer->quadric +
+           mean_factor(p, pair) *
+               regularity(p, pair, 4 * dot(told.half, told.half));
+}
+
+/* Both ends' quadrics about the midpoint: without attributes and factors, and
+ * with them. The pair is expected. */
+static void sum_both(const enc_pricing *p, const enc_surface *s,
+                     const enc_pair *pair, enc_quadric ends[2],
+                     const double half[3], bool now, enc_quadric *shape,
+                     enc_quadric *sum)
+{
+    sum_about_midpoint(&ends[0], &ends[1], half, shape);
+    *sum = *shape;
+    if (p->looks.count == 0 && !p->factor)
+        return;
+    enc_looks_add_child(&p->looks, s, pair->child, now, &ends[0]);
+    if (parent_moves(p, s, pair))
+        enc_looks_add_parent(&p->looks, s, pair->parent, now, &ends[1]);
+    if (p->factor) {
+        scale(&ends[0], factor_of(p, pair->child));
+        scale(&ends[1], factor_of(p, pair->parent));
+    }
+    sum_about_midpoint(&ends[0], &ends[1], half, sum);
 }
 
 enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
                                const enc_pair *pair)
 {
-    const enc_quadric child = recall(p, pair->child);
-    const enc_quadric parent = recall(p, pair->parent);
-    double edge[3], half[3], x[3], value;
-    enc_quadric pull;
+    enc_quadric ends[2] = { recall(p, pair->child), recall(p, pair->parent) };
+    const double weight = ends[0].weight + ends[1].weight;
+    double edge[3], half[3], middle[3], x[3];
+    enc_offer offer = { .cost = 0 };
 
     difference(s->position[pair->child], s->position[pair->parent], edge);
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
         half[i] = edge[i] / 2;
-    sum_pulls(p, pair, half, &pull);
+        middle[i] = s->position[pair->parent][i] + half[i];
+        x[i] = -half[i];
+    }
+    enc_looks_expect(&p->looks, s, pair);
     if (!parent_moves(p, s, pair)) {
         const double back[3] = { -edge[0], -edge[1], -edge[2] };
-        value = factor_of(p, pair->child) * enc_quadric_value(&child, back) +
-                factor_of(p, pair->parent) * parent.c;
-        for (int i = 0; i < 3; i++)
-            x[i] = -half[i];
+        offer.distance = enc_quadric_value(&ends[0], back) + ends[1].c;
+        enc_looks_add_child(&p->looks, s, pair->child, false, &ends[0]);
+        offer.quadric =
+            factor_of(p, pair->child) * enc_quadric_value(&ends[0], back) +
+            factor_of(p, pair->parent) * ends[1].c;
     } else {
-        enc_quadric sum;
-
-        sum_weighted(p, pair, &child, &parent, half, &sum);
+        enc_quadric shape, sum, pull;
+        sum_both(p, s, pair, ends, half, false, &shape, &sum);
+        sum_pulls(p, pair, half, &pull);
         free_place(&sum, &pull, half, x);
-        value = enc_quadric_value(&sum, x);
+        offer.distance = enc_quadric_value(&shape, x);
+        offer.quadric = enc_quadric_value(&sum, x);
     }
-    return (enc_offer){ .cost = p->taste.quadric * value +
-                                regularity(p, pair, dot(edge, edge)),
-                        .quadric = value,
-                        .pull = pull_at(&pull, x) };
+    enc_looks_forget(&p->looks, s, pair);
+    offer.distance = weight > 0 ? offer.distance / weight : 0;
+    offer.cost = cost_of(p, s, pair, middle, x, &offer);
+    return offer;
 }
 
 /* Where the parent should go, relative to the midpoint. A constraint is worth
@@ -335,47 +391,30 @@ static void round_place(const enc_mesh *mesh, const enc_quadric *sum,
     }
 }
 
-/* Without the factors, which are no distances. x is about the midpoint. */
-static double plain_distance(const enc_quadric *child,
-                             const enc_quadric *parent, const double half[3],
-                             const double x[3])
-{
-    const double weight = child->weight + parent->weight;
-    double from_child[3], from_parent[3];
-
-    for (int i = 0; i < 3; i++) {
-        from_child[i] = x[i] - half[i];
-        from_parent[i] = x[i] + half[i];
-    }
-    return weight > 0 ? (enc_quadric_value(child, from_child) +
-                         enc_quadric_value(parent, from_parent)) / weight
-                      : 0;
-}
-
 enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
                             const enc_pair *pair)
 {
     const int32_t *from = s->position[pair->child];
     const int32_t *to = s->position[pair->parent];
-    enc_quadric child, parent, sum, pull, steered;
+    enc_quadric ends[2], shape, sum, pull, steered;
     enc_offer offer = { .place = { to[0], to[1], to[2] } };
     double edge[3], half[3], middle[3], x[3];
 
     if (p->metric == PMESH_MEMORYLESS) {
-        enc_star_quadric(s, pair->child, &child);
-        enc_star_quadric(s, pair->parent, &parent);
+        enc_star_quadric(s, pair->child, &ends[0]);
+        enc_star_quadric(s, pair->parent, &ends[1]);
     } else {
-        child = recall(p, pair->child);
-        parent = recall(p, pair->parent);
+        ends[0] = recall(p, pair->child);
+        ends[1] = recall(p, pair->parent);
     }
     difference(from, to, edge);
     for (int i = 0; i < 3; i++) {
         half[i] = edge[i] / 2;
         middle[i] = to[i] + half[i];
     }
-    sum_weighted(p, pair, &child, &parent, half, &sum);
-    sum_pulls(p, pair, half, &pull);
+    sum_both(p, s, pair, ends, half, true, &shape, &sum);
     if (parent_moves(p, s, pair)) {
+        sum_pulls(p, pair, half, &pull);
         optimal_place(s, pair, &sum, &pull, half, x);
         if (pull.weight > 0)
             enc_quadric_add_here(&sum, &pull, &steered);
@@ -384,15 +423,27 @@ enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
     }
     for (int i = 0; i < 3; i++)
         x[i] = offer.place[i] - middle[i];
-    const double value = enc_quadric_value(&sum, x);
-    offer.quadric = value;
-    offer.cost =
-        p->taste.quadric * value + regularity(p, pair, dot(edge, edge));
-    offer.distance = p->factor        ? plain_distance(&child, &parent, half, x)
-                     : sum.weight > 0 ? value / sum.weight
-                                      : 0;
-    offer.pull = pull_at(&pull, x);
+    offer.quadric = enc_quadric_value(&sum, x);
+    if (shape.weight > 0)
+        offer.distance = enc_quadric_value(&shape, x) / shape.weight;
+    offer.cost = cost_of(p, s, pair, middle, x, &offer);
     return offer;
+}
+
+void enc_pricing_ends(const enc_pricing *p, const enc_surface *s,
+                      const enc_pair *pair, double pull[2])
+{
+    double half[3], back[3];
+    enc_quadric sum;
+
+    difference(s->position[pair->child], s->position[pair->parent], half);
+    for (int i = 0; i < 3; i++) {
+        half[i] /= 2;
+        back[i] = -half[i];
+    }
+    sum_pulls(p, pair, half, &sum);
+    pull[0] = pull_at(&sum, back);
+    pull[1] = pull_at(&sum, half);
 }
 
 /* The factor of what two vertices become: the mean by area. */

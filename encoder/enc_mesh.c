@@ -15,6 +15,7 @@ void enc_mesh_destroy(enc_mesh *mesh)
 
     enc_guide_destroy(mesh);
     pmesh_release(a, mesh->exact, mesh->vertex_count, sizeof *mesh->exact);
+    pmesh_release(a, mesh->source, mesh->vertex_count, sizeof *mesh->source);
     pmesh_release(a, mesh->position, mesh->vertex_count,
                   sizeof *mesh->position);
     pmesh_release(a, mesh->vertex, corners, sizeof *mesh->vertex);
