@@ -29,7 +29,7 @@ typedef struct coordinate {
 } coordinate;
 
 /* Of Golomb's bins, half a deviation wide; the rest of the bits below. */
-static uint64_t code_size(pmesh_coder *coder, const pmesh_near *at,
+static uint64_t code_size(pmesh_coder *coder, const pmesh_expectation *at,
                           uint64_t size)
 {
     /* The deviation is 2^(scale/2 - 4) steps. */
@@ -58,7 +58,8 @@ static uint64_t code_size(pmesh_coder *coder, const pmesh_near *at,
     return result;
 }
 
-int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_near *at, int64_t value)
+int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_expectation *at,
+                        int64_t value)
 {
     const int64_t center = (at->mean + FRACTION / 2) >> FRACTION_BITS;
     const int64_t part = at->mean - center * FRACTION; /* -8 .. 7 */
@@ -79,7 +80,7 @@ int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_near *at, int64_t value)
 static int64_t code_coordinate(pmesh_coder *coder, pmesh_residual_model *m,
                                const coordinate *at, int64_t value)
 {
-    const pmesh_near near = { &m->any[at->scale],
+    const pmesh_expectation near = { &m->any[at->scale],
                               &m->here[at->scale][at->place][at->far],
                               m->low[at->scale], &m->escape, at->scale,
                               at->mean };
@@ -210,7 +211,7 @@ static void learn_errors(const gauss *g, const int64_t d[3], pmesh_mean *along,
 }
 
 bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
-                         const pmesh_prediction *p, int32_t position[3])
+                         pmesh_prediction *p, int32_t position[3])
 {
     pmesh_models *m = &c->models;
     pmesh_mean *along =

@@ -185,7 +185,7 @@ static void learn_fit(pmesh_fit *fit, const guess *g, int64_t value,
     const int64_t target = value - g->mean;
     uint64_t all = (uint64_t)size_of(target) | 1;
     pmesh_sample s;
-    int32_t f[PMESH_FIT_TERMS], *pair = s.pair;
+    int32_t f[PMESH_FIT_TERMS];
     for (int t = 0; t < PMESH_FIT_TERMS; t++)
         all |= (uint64_t)size_of(g->term[t]);
     const int scale = TERM_BITS - (int)pmesh_bit_length(all);
@@ -193,8 +193,8 @@ static void learn_fit(pmesh_fit *fit, const guess *g, int64_t value,
     for (int t = 0; t < PMESH_FIT_TERMS; t++) {
         f[t] = (int32_t)pmesh_scale(g->term[t], scale);
         for (int j = 0; j <= t; j++)
-            *pair++ = f[t] * f[j];
-        s.target[t] = f[t] * y;
+            s.product[t][j] = f[t] * f[j];
+        s.product[t][PMESH_FIT_TERMS] = f[t] * y;
     }
     const int64_t e = limited(pmesh_scale(expected, scale), ERROR_LIMIT);
     const int64_t o = limited(pmesh_scale(value - g->value, scale),
@@ -238,7 +238,7 @@ static bool code_component(pmesh_codec *c, pmesh_coder *coder, subject *s,
             : ((int64_t)by_spread->value + by_far->value) / 2;
     const unsigned scale =
         pmesh_deviation_scale((uint64_t)expected, PMESH_VALUE_SCALES);
-    const pmesh_near near = { &all->any[scale], &m->here[scale],
+    const pmesh_expectation near = { &all->any[scale], &m->here[scale],
                               all->low[scale], &all->escape, scale, g.value };
     const int64_t result = pmesh_code_near(coder, &near, *value);
     if (result < 0 || result > c->component_max[s->channel->first + k])
