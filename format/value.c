@@ -225,13 +225,13 @@ static bool code_component(pmesh_codec *c, pmesh_coder *coder, subject *s,
 {
     pmesh_value_models *m = &c->value_models[s->channel->first + k];
     pmesh_channel_models *all = &c->channel_models[s->channel - c->channel];
-    const unsigned class = count_class(s->around->count);
-    pmesh_fit *fit = &m->fit[class < 3 ? 0 : class - 2];
+    const unsigned group = count_class(s->around->count);
+    pmesh_fit *fit = &m->fit[group < 3 ? 0 : group - 2];
     guess g;
     predict(s, k, fit, &g);
 
-    pmesh_mean *by_spread = &m->by_spread[class][spread_class(g.spread)];
-    pmesh_mean *by_far = &m->by_far[class][*far];
+    pmesh_mean *by_spread = &m->by_spread[group][spread_class(g.spread)];
+    pmesh_mean *by_far = &m->by_far[group][*far];
     const int64_t expected =
         by_spread->uses < FEW_USES
             ? by_far->value
