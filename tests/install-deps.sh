@@ -74,6 +74,7 @@ group_cross() {
 group_web() {
     need clang program clang
     need lld program wasm-ld
+    need binaryen program wasm-opt
     need nodejs program node
     need npm program npm
     need chromium program chromium
