@@ -56,6 +56,7 @@ pmesh_status pmesh_scene_get_header(const pmesh_scene *s,
     if (!s->has_header)
         return s->error.status < 0 ? s->error.status : PMESH_NEED_DATA;
     *out = (pmesh_scene_header){ .content_hash = s->head.content_hash,
+                                 .document_form = s->head.document_form,
                                  .document_bytes = s->head.document_size,
                                  .mesh_count = s->head.mesh_count,
                                  .resource_count = s->head.resource_count,

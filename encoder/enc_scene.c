@@ -78,6 +78,7 @@ static void choose_rows(scene_file *f)
 static pmesh_status fill_head(scene_file *f)
 {
     const pmesh_scene_input *in = f->mux.in;
+    f->head.document_form = in->document_form;
     f->head.document_size = in->document.size;
     f->head.mesh_count = (uint32_t)in->mesh_count;
     f->head.resource_count = (uint32_t)in->resource_count;
@@ -179,6 +180,7 @@ static bool input_is_sound(const pmesh_scene_input *in)
         in->resource_count > PMESH_MAX_SCENE_PARTS ||
         in->early_count > in->resource_count ||
         in->document.size > PMESH_MAX_CHUNK_SIZE ||
+        in->document_form > PMESH_DOCUMENT_ZLIB ||
         (in->document.size > 0 && !in->document.data) ||
         (in->resource_count > 0 && !in->resources))
         return false;

@@ -44,6 +44,8 @@ typedef struct pmesh_scene_input {
     const pmesh_scene_mesh_input *meshes;
     size_t mesh_count; /* 1 .. 65536 */
     pmesh_scene_blob document; /* at most 2^28 bytes; may be empty */
+    pmesh_document_form document_form; /* of these bytes; they are not looked
+                                          at */
     const pmesh_scene_blob *resources;
     size_t resource_count; /* at most 65536 */
     size_t early_count;    /* the first of the resources, which are needed to

@@ -10,10 +10,12 @@
 #include <new>
 
 #include "tools/gltf_document.h"
+#include "tools/pack.h"
 #include "tools/scene_geometry.h"
 
 namespace {
 
+enum { MAX_DOCUMENT = 1 << 28 };
 enum { TARGET_VERTICES = 34962, TARGET_INDICES = 34963 };
 
 /* One grey pixel, in the place of an image that has not arrived. */
@@ -44,6 +46,7 @@ private:
     std::map<uint32_t, std::unique_ptr<scene_geometry>> meshes;
     std::vector<size_t> resource_start; /* in bin */
 
+    void read_document(asset_bytes *plain);
     void open();
     std::vector<size_t> free_list(const char *name);
     size_t place(const char *list, std::vector<size_t> &free,
@@ -81,17 +84,33 @@ std::vector<size_t> writer::free_list(const char *name)
     return numbers;
 }
 
-void writer::open()
+/* As text, at most as long as a document may be. */
+void writer::read_document(asset_bytes *plain)
 {
     const pmesh_scene_bytes text = pmesh_scene_document(scene);
+    const auto size = static_cast<size_t>(text.size);
+    pmesh_scene_header header = {};
+
+    if (!text.data || text.arrived < text.size)
+        throw std::runtime_error("cut off before the scene's document");
+    pmesh_scene_get_header(scene, &header);
+    if (header.document_form == PMESH_DOCUMENT_PLAIN)
+        asset_put(plain, text.data, size);
+    else if (!unpack_zlib(text.data, size, MAX_DOCUMENT, plain))
+        throw std::runtime_error("the document cannot be unpacked");
+}
+
+void writer::open()
+{
+    asset_bytes plain = {};
+    const std::unique_ptr<asset_bytes, void (*)(asset_bytes *)> text(
+        &plain, asset_bytes_free);
     gltf_source source = {};
     asset unused = {};
     asset_error error;
 
-    if (!text.data || text.arrived < text.size)
-        throw std::runtime_error("cut off before the scene's document");
-    if (!gltf_open(text.data, static_cast<size_t>(text.size), &source, &unused,
-                   &error))
+    read_document(&plain);
+    if (!gltf_open(plain.data, plain.size, &source, &unused, &error))
         throw std::runtime_error(std::string("the document is no glTF: ") +
                                  error.what);
     doc = gltf_document::parse(source.json, source.json + source.json_size);

@@ -76,6 +76,7 @@ static made *make(size_t count, int lossless)
     m->input = (pmesh_scene_input){
         .meshes = m->meshes, .mesh_count = count,
         .document = { m->document, sizeof m->document },
+        .document_form = PMESH_DOCUMENT_ZLIB,
         .resources = m->resources, .resource_count = RESOURCES,
         .early_count = 1
     };
@@ -126,6 +127,7 @@ TEST(scene_comes_back_whole)
             CHECK(m->report.bytes == m->file.size);
             CHECK(pmesh_scene_get_header(s, &h) == PMESH_OK);
             CHECK(h.mesh_count == MESHES && h.resource_count == RESOURCES);
+            CHECK(h.document_form == PMESH_DOCUMENT_ZLIB);
             CHECK(pmesh_scene_refine(s, NULL, &shown) == PMESH_OK);
             CHECK(shown.faces == m->report.faces && shown.meshes == MESHES);
             CHECK(h.levels[h.level_count - 1].faces == shown.faces);
@@ -390,6 +392,13 @@ TEST(scene_header_is_checked)
     CHECK(status_of(&b) == PMESH_E_LIMIT);
     put_header(&b, &h, mesh, PMESH_MAX_FILE);
     CHECK(status_of(&b) < 0);
+    h.document_form = PMESH_DOCUMENT_ZLIB;
+    put_header(&b, &h, mesh, 5);
+    CHECK(status_of(&b) == PMESH_NEED_DATA);
+    h.document_form = PMESH_DOCUMENT_ZLIB + 1;
+    put_header(&b, &h, mesh, 5);
+    CHECK(status_of(&b) == PMESH_E_CORRUPT);
+    h = plain_head();
     h.chunk_size = PMESH_MAX_CHUNK_SIZE + 1;
     put_header(&b, &h, mesh, 5);
     CHECK(status_of(&b) == PMESH_E_CORRUPT);
