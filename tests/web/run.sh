@@ -51,6 +51,12 @@ tools/web/build.sh $web/pmesh 0.0.0 || exit 1
 "$PMESH" sample -o "$dir/a.ply" --faces 70k &&
     "$PMESH" bake -q "$dir/a.ply" -o "$dir/a.pmesh" &&
     "$PMESH" bake -q "$dir/a.ply" -o "$dir/b.pmesh" --no-attributes || exit 1
+mkdir "$dir/zoo" && python3 tests/scene/zoo.py "$dir/zoo" || exit 1
+for scene in "$dir"/zoo/*.glb; do
+    "$PMESH" bake -q "$scene" -o "${scene%.glb}.pmesh" || exit 1
+done
+PMESH_ZOO=$dir/zoo
+export PMESH_ZOO
 PMESH_GOLDEN=$PWD/tests/golden/ PMESH_SAMPLE=$dir/a.pmesh
 PMESH_OTHER=$dir/b.pmesh
 export PMESH PMESH_GOLDEN PMESH_SAMPLE PMESH_OTHER
@@ -80,9 +86,10 @@ if ! cmp -s $lock $web/browser/installed; then
         cp $lock $web/browser/installed || exit 1
 fi
 tools/web/viewer/build.sh $web/pmesh $web/viewer.html || exit 1
-cp tests/web/server.mjs tests/web/browser/*.mjs $web/browser/
+cp tests/web/server.mjs tests/web/glb.mjs tests/web/browser/*.mjs $web/browser/
 ln -sfn ../viewer/node_modules/three $web/node_modules/three
 run_tests $web/browser/three.check.mjs
+run_tests $web/browser/gltf.check.mjs
 run_tests $web/browser/worker.check.mjs
 run_tests $web/browser/viewer.check.mjs
 finish

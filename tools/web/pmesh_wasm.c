@@ -352,7 +352,7 @@ static int make_lists(uint32_t count)
     return shares != NULL;
 }
 
-/* Counts, then levels; NULL before the header. */
+/* Counts, form of the document, levels; NULL before the header. */
 EXPORT(scene_info) const double *scene_info(void)
 {
     pmesh_scene_header h;
@@ -361,8 +361,9 @@ EXPORT(scene_info) const double *scene_info(void)
         return NULL;
     const double fixed[] = { (double)(h.content_hash >> 32),
                              (double)(uint32_t)h.content_hash, h.mesh_count,
-                             h.resource_count, h.level_count };
-    double *at = put(list, fixed, 5);
+                             h.resource_count, h.document_form,
+                             h.level_count };
+    double *at = put(list, fixed, 6);
     for (uint32_t i = 0; i < h.level_count; i++) {
         const pmesh_scene_level *l = &h.levels[i];
         const double level[] = { (double)l->bytes, (double)l->faces,

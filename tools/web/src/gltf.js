@@ -55,10 +55,17 @@ export class ProgressivePlugin {
     }
 
     // A buffer of a .pmesh scene is a resource; null leaves it to the loader.
-    loadBuffer(number) {
-        const { scene, coarse } = this.#options;
-        if (!scene)
+    loadBufferView(number) {
+        if (!this.#options.scene)
             return null;
+        const view = this.#parser.json.bufferViews[number];
+        const first = view.byteOffset ?? 0;
+        return this.#buffer(view.buffer).then((buffer) =>
+            buffer.slice(first, first + view.byteLength));
+    }
+
+    #buffer(number) {
+        const { scene, coarse } = this.#options;
         if (number === coarse.number)
             return Promise.resolve(coarse.data);
         const bytes = scene.resource(number);
@@ -72,12 +79,27 @@ export class ProgressivePlugin {
     async afterRoot(result) {
         if (!this.#scene && !this.#extension?.stream)
             return;
-        const handle = new Progressive(this.#parser, result, this.#options);
+        const handle = new Progressive(this.#parser, result, this.#options,
+            await this.#primitives());
         result.progressive = handle;
         if (this.#scene)
             handle.begin(this.#scene);
         handle.done = this.#run(handle);
-        handle.done.catch(() => {}); // told to those who wait for it
+        // Told to those who wait for it.
+        handle.done.catch((error) => handle.fail(error));
+    }
+
+    // Primitives by their accessor of indices, which copies of an object share;
+    // the loader tells places in the file for one of its scenes only.
+    async #primitives() {
+        const places = new Map();
+        for (const { primitives } of this.#parser.json.meshes ?? [])
+            for (const primitive of primitives)
+                if (primitive.extensions?.[NAME])
+                    places.set(await this.#parser.getDependency("accessor",
+                        primitive.indices ?? primitive.attributes.POSITION),
+                    primitive);
+        return places;
     }
 
     async #run(handle) {
@@ -145,17 +167,22 @@ export class ProgressivePlugin {
 // What a loaded scene can do besides: `scene` is that of pmesh.
 export class Progressive {
     scene = null;
+    ready; // promise: the stream's base meshes are there, and `scene`
     done = null; // promise: everything that was to come is there
     result;
     #parser;
     #options;
+    #primitives;
+    #begun = deferred();
     #buffers = new Map(); // of a mesh with a set of attributes -> Buffers
     #parts = new Map(); // mesh of the stream -> [{ buffers, geometry, ... }]
 
-    constructor(parser, result, options) {
+    constructor(parser, result, options, primitives) {
         this.#parser = parser;
         this.result = result;
         this.#options = options;
+        this.#primitives = primitives;
+        this.ready = this.#begun.promise;
     }
 
     // Puts the stream's buffers in the place of the coarse ones.
@@ -164,16 +191,22 @@ export class Progressive {
         scene.refine({ faces: 1 });
         const geometries = new Map(); // by primitive, which may be in many places
         for (const object of this.#objects()) {
-            const primitive = this.#primitive(object);
-            const record = primitive?.extensions?.[NAME];
-            if (!record)
+            const { index, attributes } = object.geometry;
+            const primitive = this.#primitives.get(index ?? attributes.position);
+            if (!primitive)
                 continue;
             if (!geometries.has(primitive))
-                geometries.set(primitive, this.#makeGeometry(record));
+                geometries.set(primitive,
+                    this.#makeGeometry(primitive.extensions[NAME]));
             object.geometry.dispose();
             object.geometry = geometries.get(primitive);
         }
         this.refine(this.#options.target);
+        this.#begun.resolve(scene);
+    }
+
+    fail(error) {
+        this.#begun.reject(error);
     }
 
     *#objects() {
@@ -182,12 +215,6 @@ export class Progressive {
             scene.traverse((object) => object.isMesh && found.push(object));
             yield* found;
         }
-    }
-
-    #primitive(object) {
-        const at = this.#parser.associations.get(object);
-        return at?.meshes === undefined ? null :
-            this.#parser.json.meshes[at.meshes].primitives[at.primitives ?? 0];
     }
 
     // Primitives of one stream share them.
@@ -300,8 +327,8 @@ export async function load(input, loader, options = {}) {
     if (head.kind === "pmesh") {
         const scene = new Scene(new Rest(source, data), options);
         await scene.start();
-        const text = new TextDecoder().decode(scene.document());
-        Object.assign(more, { scene }, dress(JSON.parse(text), scene, NAME));
+        const json = JSON.parse(await scene.document());
+        Object.assign(more, { scene }, dress(json, scene, NAME));
         data = more.json;
     } else if (head.tail) {
         more.tail = head.tail;

@@ -14,6 +14,8 @@ import { Instance, compile } from "./module.js";
 import { compressed } from "./scene-wasm.js";
 import { Source } from "./source.js";
 
+const ZLIB = 1;
+
 let module;
 
 // Resolves when all base meshes and the document are there. `input` as open().
@@ -52,7 +54,7 @@ export class SceneDecoder {
     #take() {
         const at = this.#header ? 0 : this.#wasm.scene_info();
         if (at !== 0) {
-            this.#header = readHeader(this.#instance.list(at, 5 + 4 * 64));
+            this.#header = readHeader(this.#instance.list(at, 6 + 4 * 64));
             this.#absent = this.#header.meshCount;
             this.#meshes = Array(this.#absent).fill(null);
         }
@@ -140,13 +142,17 @@ export class SceneDecoder {
             Math.max(worst, (m?.error ?? 0) * this.scale(i)), 0);
     }
 
-    // A copy of the document's bytes (of glTF: its JSON), or null until all of
-    // them are there.
-    document() {
-        return this.#bytes(-1);
+    // The document's text (of glTF: its JSON), or null until all of it is there.
+    async document() {
+        const bytes = this.#bytes(-1);
+        if (!bytes || !this.#header.documentPacked)
+            return bytes && new TextDecoder().decode(bytes);
+        const stream = new Blob([bytes]).stream()
+            .pipeThrough(new DecompressionStream("deflate"));
+        return new Response(stream).text();
     }
 
-    // The same of a resource.
+    // A copy of a resource's bytes, or null until all of them are there.
     resource(number) {
         return this.#bytes(number);
     }
@@ -190,6 +196,7 @@ function readHeader(list) {
         contentHash: hex() + hex(),
         meshCount: next(),
         resourceCount: next(),
+        documentPacked: next() === ZLIB,
     };
     const levelCount = next();
     header.levels = Array.from({ length: levelCount }, () => ({
