@@ -50,13 +50,15 @@ done
 tools/web/build.sh $web/pmesh 0.0.0 || exit 1
 "$PMESH" sample -o "$dir/a.ply" --faces 70k &&
     "$PMESH" bake -q "$dir/a.ply" -o "$dir/a.pmesh" &&
-    "$PMESH" bake -q "$dir/a.ply" -o "$dir/b.pmesh" --no-attributes || exit 1
+    "$PMESH" bake -q "$dir/a.ply" -o "$dir/b.pmesh" --no-attributes &&
+    "$PMESH" bake -q "$dir/a.ply" -o "$dir/d.pmesh" --base draco || exit 1
 mkdir "$dir/zoo" && python3 tests/scene/zoo.py "$dir/zoo" || exit 1
 for scene in "$dir"/zoo/*.glb; do
     "$PMESH" bake -q "$scene" -o "${scene%.glb}.pmesh" || exit 1
 done
 PMESH_ZOO=$dir/zoo
-export PMESH_ZOO
+PMESH_DRACO=$dir/d.pmesh
+export PMESH_ZOO PMESH_DRACO
 PMESH_GOLDEN=$PWD/tests/golden/ PMESH_SAMPLE=$dir/a.pmesh
 PMESH_OTHER=$dir/b.pmesh
 export PMESH PMESH_GOLDEN PMESH_SAMPLE PMESH_OTHER

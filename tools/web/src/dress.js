@@ -105,8 +105,13 @@ class Coarse {
     }
 }
 
-// Materials as they look before their textures are there.
+// Materials as they look before their textures are there: no metal, which is
+// black where nothing is reflected.
 export function withoutTextures(materials) {
-    return materials && JSON.parse(JSON.stringify(materials),
-        (key, value) => /texture$/i.test(key) ? undefined : value);
+    return materials && JSON.parse(JSON.stringify(materials), (key, value) => {
+        if (/texture$/i.test(key))
+            return undefined;
+        return key === "pbrMetallicRoughness" ?
+            { ...value, metallicFactor: 0, roughnessFactor: 0.8 } : value;
+    });
 }
