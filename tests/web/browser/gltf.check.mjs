@@ -148,16 +148,59 @@ test("the plugin alone takes both packings, and any loader the coarse one",
         }
     });
 
-test("a stream with less than a target's faces ends there", async () => {
-    const server = await serve(await packed("morphs"), { rate: 32 });
-    try {
-        const gltf = await load(server.url, new GLTFLoader(),
-            { target: { faces: 200 } });
-        await gltf.progressive.done;
-        assert.ok(gltf.progressive.scene.faceCount <= 200);
-        await check(gltf, "morphs");
-    } finally {
-        await server.close();
+test("ends at a target, and goes on by Range", async () => {
+    const packings = [await packed("morphs"), read("morphs")];
+    for (const body of packings) {
+        const server = await serve(body, { rate: 32 });
+        try {
+            const gltf = await load(server.url, new GLTFLoader(),
+                { target: { faces: 200 } });
+            await gltf.progressive.done;
+            const { scene } = gltf.progressive;
+            assert.ok(scene.faceCount <= 200);
+            assert.equal(scene.progress.complete, false);
+            await check(gltf, "morphs");
+            await gltf.progressive.stream();
+            assert.equal(scene.faceCount, scene.header.faces);
+            await check(gltf, "morphs");
+            assert.equal(server.log.length, 2);
+            assert.match(server.log[1].range, /^bytes=\d+-$/);
+        } finally {
+            await server.close();
+        }
+    }
+});
+
+test("ranges keep the card's buffers equal", async () => {
+    const gltf = await load(read("attributes"), new GLTFLoader());
+    await gltf.progressive.done;
+    const card = new Map();
+    const render = () => {
+        for (const { geometry: g } of meshesOf(gltf))
+            for (const a of [g.index, ...Object.values(g.attributes)]) {
+                const copy = card.get(a) ?? a.array.slice();
+                for (const { start, count } of a.updateRanges)
+                    copy.set(a.array.subarray(start, start + count), start);
+                a.clearUpdateRanges();
+                card.set(a, copy);
+            }
+    };
+    render();
+    for (let i = 1; i < 50; i++) {
+        const faces = 1 + i * 7919 % gltf.progressive.scene.header.faces;
+        const { meshes } = gltf.progressive.refine({ faces });
+        render();
+        for (const { geometry: g } of meshesOf(gltf)) {
+            const end = g.drawRange.start + g.drawRange.count;
+            assert.deepEqual(card.get(g.index).subarray(0, end),
+                g.index.array.subarray(0, end));
+            const source = gltf.progressive.scene.meshes[0];
+            for (const a of Object.values(g.attributes))
+                assert.deepEqual(
+                    card.get(a).subarray(0, a.itemSize * source.vertexCount),
+                    a.array.subarray(0, a.itemSize * source.vertexCount));
+        }
+        assert.ok(meshes.length <= 1);
     }
 });
 

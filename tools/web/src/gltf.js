@@ -31,7 +31,7 @@ export class ProgressivePlugin {
     #parser;
     #options;
     #scene;      // of pmesh; of a .glb made by afterRoot()
-    #resources = new Map(); // number -> { promise, resolve }, not there yet
+    #resources = new Map(); // number -> { promise, resolve }: not there yet
     #left = {};  // of the document: what is added when resources are there
 
     constructor(parser, options = {}) {
@@ -108,16 +108,12 @@ export class ProgressivePlugin {
             await this.#scene.start();
             handle.begin(this.#scene);
         }
+        handle.arrived = () => this.#arrive();
         const looks = this.#finish(handle);
         looks.catch(() => {});
-        try {
-            await handle.stream(this.#options.target, () => this.#arrive());
-            this.#arrive();
-        } finally {
-            for (const waiting of this.#resources.values())
-                waiting.reject(new PmeshError("ends before it", "cut"));
-        }
-        await looks;
+        await handle.stream(this.#options.target);
+        if (this.#scene.progress.complete)
+            await looks;
     }
 
     // Where the stream of a .glb or .gltf is.
@@ -167,8 +163,9 @@ export class ProgressivePlugin {
 // What a loaded scene can do besides: `scene` is that of pmesh.
 export class Progressive {
     scene = null;
+    arrived = () => {}; // for the plugin: more of the file is there
     ready; // promise: the stream's base meshes are there, and `scene`
-    done = null; // promise: everything that was to come is there
+    done = null; // promise: what `target` asks for is there, or all there is
     result;
     #parser;
     #options;
@@ -276,9 +273,11 @@ export class Progressive {
     async stream(target, seen = () => {}) {
         for await (const changes of this.scene.stream(target)) {
             this.update(changes);
+            this.arrived();
             seen(changes);
             await this.#options.changed?.(this);
         }
+        this.arrived();
     }
 
     // The loader's own material, with its textures.
@@ -310,7 +309,7 @@ function deferred() {
     const made = {};
     made.promise = new Promise((resolve, reject) =>
         Object.assign(made, { resolve, reject }));
-    made.promise.catch(() => {});
+    made.promise.catch(() => {}); // told to those who wait for it
     return made;
 }
 

@@ -58,7 +58,7 @@ export class Progressive {
     readonly scene: Scene | null;
     /** The stream's base meshes are there. */
     readonly ready: Promise<Scene>;
-    /** Everything that was to come is there. */
+    /** What `target` asks for is there, or all there is. */
     readonly done: Promise<void>;
     readonly result: GLTF;
     refine(target?: SceneTarget): SceneChanges | null;

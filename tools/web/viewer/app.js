@@ -17,6 +17,8 @@ let held = null;      // the file's bytes, as far as they are known
 let finished = false; // the load
 let first = null;     // what had arrived when something could be shown
 
+const WAYS = { morph: true, inflate: true }; // in which levels may be shown
+
 // ---- where the file comes from --------------------------------------------
 
 const data = $("mesh");
@@ -39,9 +41,9 @@ async function slowFetch(...all) {
 
 async function connect() {
     if (data.dataset.url)
-        return open(data.dataset.url, { fetch: slowFetch });
+        return open(data.dataset.url, { fetch: slowFetch, ...WAYS });
     held ??= embedded();
-    return open(link(new Response(held)));
+    return open(link(new Response(held)), WAYS);
 }
 
 // ---- loading ----------------------------------------------------------------
@@ -86,7 +88,7 @@ async function sharpen(mine) {
         stage.object.update(changes);
         if (changes.restarted)
             start(true);
-        choose(target);
+        choose(target, null, false);
         arrived(began);
         await frame();
     }
@@ -112,14 +114,19 @@ function complain(error) {
 
 // ---- level of detail --------------------------------------------------------
 
-// `from`: the control that is being used keeps what it says.
-function choose(wanted, from) {
+// `from`: the control that is being used keeps what it says. While a file
+// arrives, levels do not take their time.
+function choose(wanted, from, slowly = true) {
     target = wanted;
-    const changes = mesh?.refine(wanted);
-    if (!changes)
+    if (!mesh || stage.object === null)
         return;
-    stage.object.update(changes);
-    stage.draw();
+    if (slowly && $("morph").checked) {
+        stage.go(wanted);
+        stage.moved = () => update(from);
+    } else {
+        stage.object.refine(wanted);
+        stage.draw();
+    }
     update(from);
 }
 
@@ -220,6 +227,14 @@ $("tint").addEventListener("change", ({ target: { checked } }) => {
 $("flat").addEventListener("change", ({ target: { checked } }) => {
     stage.flat = checked;
 });
+// One or the other: a swollen mesh has no coarser one that it grows out of.
+for (const [id, way, other] of [["swell", { inflate: true }, "morph"],
+    ["morph", { morph: true }, "swell"]])
+    $(id).addEventListener("change", ({ target: { checked } }) => {
+        if (checked)
+            $(other).checked = false;
+        stage.way = checked ? way : {};
+    });
 $("compare").addEventListener("change", compare);
 $("divider").addEventListener("input", ({ target: { value } }) => {
     $("line").style.left = `${value}%`;
@@ -249,7 +264,9 @@ $("replay").addEventListener("click", () => {
 
 // ---- keys -------------------------------------------------------------------
 
-const TOGGLES = { w: "wire", l: "tint", f: "flat", s: "compare" };
+const TOGGLES = {
+    w: "wire", l: "tint", f: "flat", s: "compare", v: "swell", m: "morph",
+};
 
 addEventListener("keydown", (event) => {
     const { key, target: where } = event;
