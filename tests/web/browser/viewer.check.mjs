@@ -10,7 +10,8 @@ import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
-const { PMESH, PMESH_GOLDEN, PMESH_SAMPLE, CHROMIUM, SHOTS } = process.env;
+const { PMESH, PMESH_GOLDEN, PMESH_SAMPLE, PMESH_ZOO, CHROMIUM, SHOTS } =
+    process.env;
 const FLAGS = ["--no-sandbox", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update",
     "--disable-sync", "--enable-precise-memory-info", "--use-angle=swiftshader",
@@ -176,6 +177,35 @@ test("coarse levels swell", async () => {
     assert.equal(await other.evaluate(() => viewer.mesh.faceCount), 200);
     await other.check("#morph");
     assert.equal(await other.isChecked("#swell"), false);
+    await other.close();
+});
+
+test("a scene is shown with its materials", async () => {
+    const html = join(SHOTS, "scene.html");
+    execFileSync(PMESH, ["view", join(PMESH_ZOO, "textures.pmesh"), "-o", html,
+        "-q"]);
+    const other = await openPage(pathToFileURL(html).href);
+    await other.waitForFunction(() => globalThis.viewer?.finished, null,
+        { timeout: 30_000 });
+    await settle(other);
+    writeFileSync(join(SHOTS, "scene.png"), await other.screenshot());
+    const state = () => other.evaluate(() => ({
+        faces: viewer.mesh.faceCount, all: viewer.mesh.header.faces,
+        base: viewer.mesh.header.baseFaces,
+        drawn: viewer.stage.info.render.triangles,
+    }));
+    const full = await state();
+    assert.equal(full.faces, full.all);
+    assert.equal(full.drawn, full.all);
+    await other.fill("#faces", "0");
+    await settle(other);
+    const least = await state();
+    assert.equal(least.faces, least.base);
+    assert.ok(least.drawn < full.drawn);
+    assert.equal(await other.isVisible("#tint"), false);
+    await other.check("#wire");
+    await settle(other);
+    assert.ok(await other.evaluate(() => viewer.stage.info.render.lines) > 0);
     await other.close();
 });
 

@@ -3,6 +3,7 @@
 import { Decoder, open } from "pmesh";
 import { Chart, size } from "./chart.js";
 import { frame, throttle } from "./link.js";
+import { openScene } from "./scene.js";
 import { Stage } from "./stage.js";
 
 const $ = (id) => document.getElementById(id);
@@ -39,11 +40,21 @@ async function slowFetch(...all) {
     }) : response;
 }
 
-async function connect() {
-    if (data.dataset.url)
-        return open(data.dataset.url, { fetch: slowFetch, ...WAYS });
-    held ??= embedded();
-    return open(link(new Response(held)), WAYS);
+// Files say with their ninth byte what they hold.
+const SCENE = 8;
+
+async function connect(mine) {
+    const { url } = data.dataset;
+    if (!url)
+        held ??= embedded();
+    const start = held ?? new Uint8Array(await (await fetch(url, {
+        headers: { Range: "bytes=0-15" },
+    })).arrayBuffer());
+    const options = url ? { fetch: slowFetch } : {};
+    const input = () => url ?? link(new Response(held));
+    return start[8] === SCENE ?
+        openScene(input(), held?.length, options, (view) => seen(view, mine)) :
+        open(input(), { ...options, ...WAYS });
 }
 
 // ---- loading ----------------------------------------------------------------
@@ -55,14 +66,14 @@ async function load() {
     $("message").hidden = true;
     $("progress").value = 0;
     try {
-        const opened = await connect();
+        const opened = await connect(mine);
         if (mine !== run)
             return opened.stop();
         mesh = opened;
         mesh.refine();
         first = mesh.progress;
         start(again);
-        await sharpen(mine);
+        await (mesh.isScene ? fill(mine) : sharpen(mine));
     } catch (error) {
         if (mine === run)
             complain(error);
@@ -72,6 +83,7 @@ async function load() {
 function start(again) {
     stage.show(mesh, again);
     const { header } = mesh;
+    document.body.classList.toggle("scene", mesh.isScene === true);
     $("about").textContent = `${count(header.faces)} faces, ` +
         `${size(header.bytes)}, ${header.levels.length} levels`;
     $("face-count").min = header.baseFaces;
@@ -98,6 +110,29 @@ async function sharpen(mine) {
         complain(new Error("The file ends early: this is all it holds."));
     if ($("compare").checked)
         await compare();
+}
+
+// A scene streams by itself.
+let began = 0;
+
+async function seen(view, mine) {
+    if (mine !== run)
+        return view.stop();
+    if (view === mesh) {
+        choose(target, null, false);
+        arrived(began);
+    }
+    return frame();
+}
+
+async function fill(mine) {
+    began = performance.now();
+    await mesh.done;
+    if (mine === run) {
+        finished = mesh.progress.complete;
+        choose(target, null, false);
+        arrived(began);
+    }
 }
 
 function arrived(began) {

@@ -76,8 +76,9 @@ export class Stage {
     // Takes a mesh of pmesh; the camera stays if it is the same one again.
     show(source, keepCamera) {
         this.#object?.removeFromParent();
-        this.#object?.geometry.dispose();
-        this.#object = new ProgressiveMesh(source, this.#material, this.#way);
+        this.#object?.geometry?.dispose();
+        this.#object = source.isScene ? source.object :
+            new ProgressiveMesh(source, this.#material, this.#way);
         this.#scene.add(this.#object);
         this.#paint();
         this.wireframe = this.#wire !== null;
@@ -88,7 +89,8 @@ export class Stage {
     }
 
     #frame() {
-        const { center, radius } = sphereOf(this.#object.source.header);
+        const { sphere, source } = this.#object;
+        const { center, radius } = sphere ?? sphereOf(source.header);
         this.#camera.near = NEAR * radius;
         this.#camera.far = FAR * radius;
         this.#camera.position.copy(center)
@@ -120,6 +122,11 @@ export class Stage {
     // The same geometry once more: three makes its lines from the indices.
     set wireframe(on) {
         this.#wire?.removeFromParent();
+        if (this.#object?.source.isScene) {
+            this.#object.wireframe = on;
+            this.draw();
+            return;
+        }
         this.#wire = on && this.#object ?
             new Mesh(this.#object.geometry, this.#lines) : null;
         if (this.#wire)
