@@ -167,7 +167,7 @@ function choose(wanted, from, slowly = true) {
 
 function levelOf(faces) {
     const { levels } = mesh.header;
-    return levels.findLastIndex((level) => level.faces <= faces);
+    return Math.max(0, levels.findLastIndex((level) => level.faces <= faces));
 }
 
 // Bytes of the file up to the visible faces: exact at levels, a share between.
