@@ -85,4 +85,7 @@ ln -sfn ../viewer/node_modules/three $web/node_modules/three
 run_tests $web/browser/three.check.mjs
 run_tests $web/browser/worker.check.mjs
 run_tests $web/browser/viewer.check.mjs
+THREE=$PWD/$web/viewer/node_modules/three
+export THREE
+run_tests $web/browser/progressive.check.mjs
 finish
