@@ -89,7 +89,7 @@ static enc_pair pair_of(const enc_run *run, uint32_t h, bool back)
     return pair;
 }
 
-/* Its estimated quadric goes to *quadric. */
+/* Its estimated quadric goes to *quadric; the largest key: forbidden. */
 static enc_entry make_entry(const enc_run *run, uint32_t h, bool back,
                             double *quadric)
 {
@@ -99,6 +99,8 @@ static enc_entry make_entry(const enc_run *run, uint32_t h, bool back,
     const enc_offer offer = enc_pricing_estimate(&run->pricing, s, &pair);
 
     *quadric = offer.quadric;
+    if (!(offer.cost < INFINITY))
+        return (enc_entry){ UINT32_MAX, entry_id(h, back) };
     return (enc_entry){ last | enc_key(offer.cost), entry_id(h, back) };
 }
 
@@ -395,10 +397,26 @@ static double total_error(const enc_run *run, const enc_pair *pair,
     return offer->distance + (child > parent ? child : parent);
 }
 
+static void queue_again(enc_run *run, uint32_t h, bool back)
+{
+    double quadric;
+    const enc_entry entry = make_entry(run, h, back, &quadric);
+    if (entry.key < UINT32_MAX)
+        enc_queue_push(&run->queue, entry);
+}
+
+static bool is_too_far(enc_run *run, double error)
+{
+    const bool far = error > run->error_limit;
+    run->too_far |= far;
+    return far;
+}
+
 /* What it costs now, and whether it may go at that: not if that has grown (then
  * it goes back into the queue) or a face would flip or double (then perhaps the
- * other way, or at the very end). `link`: of a general pair. */
-static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
+ * other way, or at the very end). `link`: of a general pair. The pair is
+ * expected. */
+static bool is_expected_acceptable(enc_run *run, const enc_batch_plan *plan,
                           enc_entry entry, const enc_pair *pair,
                           const enc_link *link, enc_offer *offer)
 {
@@ -407,7 +425,7 @@ static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
     const bool back = entry.id & 1;
 
     *offer = enc_pricing_offer(&run->pricing, s, pair);
-    if (offer->quadric > run->guard)
+    if (offer->quadric > run->guard || !(offer->cost < INFINITY))
         return false;
     if (!plan->coherent &&
         offer->cost > STALE_FACTOR * enc_key_cost(entry.key)) {
@@ -418,12 +436,13 @@ static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
         }
     }
     const bool doubles = link && link->doubles;
-    if (!doubles && !enc_surface_flips(s, pair, offer->place))
+    const bool turns = !run->lets_turn && !doubles &&
+                       enc_looks_turn(&run->pricing.looks, s, pair);
+    if (!doubles && !turns && !enc_surface_flips(s, pair, offer->place))
         return true;
     if (may(run->edge_state[h], !back) && !(run->edge_state[h] & TURNED)) {
         run->edge_state[h] |= TURNED;
-        double quadric;
-        enc_queue_push(&run->queue, make_entry(run, h, !back, &quadric));
+        queue_again(run, h, !back);
     } else if (run->joins_sheets && link) {
         if (run->edge_state[h] & LATE)
             return true;
@@ -432,6 +451,18 @@ static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
                                                  entry.id });
     }
     return false;
+}
+
+static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
+                          enc_entry entry, const enc_pair *pair,
+                          const enc_link *link, enc_offer *offer)
+{
+    const enc_looks *looks = &run->pricing.looks;
+    enc_looks_expect(looks, &run->surface, pair);
+    const bool good =
+        is_expected_acceptable(run, plan, entry, pair, link, offer);
+    enc_looks_forget(looks, &run->surface, pair);
+    return good;
 }
 
 static bool try_general(enc_run *run, const enc_batch_plan *plan,
@@ -449,7 +480,7 @@ static bool try_general(enc_run *run, const enc_batch_plan *plan,
     if (!is_acceptable(run, plan, entry, pair, &link, &offer))
         return false;
     const double error = total_error(run, pair, &offer);
-    if (error > run->error_limit)
+    if (is_too_far(run, error))
         return false;
     contract(run, pair, &link, &offer, error);
     return true;
@@ -477,7 +508,7 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
     if (!is_acceptable(run, plan, entry, &pair, NULL, &offer))
         return false;
     const double error = total_error(run, &pair, &offer);
-    if (error > run->error_limit)
+    if (is_too_far(run, error))
         return false;
 
     enc_entry parallel[4];
@@ -494,6 +525,7 @@ uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
     uint32_t accepted = 0;
     enc_entry entry;
 
+    run->too_far = false;
     enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
                       run->out->contraction_count == 0);
     collect(run, plan);

@@ -22,7 +22,16 @@ pmesh_status enc_pricing_create(const enc_mesh *mesh,
     const pmesh_allocator *a = &mesh->allocator;
 
     *out = (enc_pricing){ .metric = config->metric,
-                          .placement = config->placement };
+                          .placement = config->placement,
+                          .rule = { .cost = config->cost,
+                                    .hook = config->cost_hook,
+                                    .user = config->cost_user,
+                                    .unit = mesh->grid.step } };
+    memcpy(out->rule.camera, config->camera, sizeof config->camera);
+    memcpy(out->rule.origin, mesh->grid.origin, sizeof out->rule.origin);
+    const pmesh_status status = enc_looks_create(mesh, &out->looks);
+    if (status != PMESH_OK)
+        return status;
     out->planes = pmesh_alloc(a, mesh->vertex_count, sizeof *out->planes);
     if (config->metric == PMESH_ACCUMULATED)
         out->moved =
@@ -44,6 +53,7 @@ void enc_pricing_destroy(const enc_mesh *mesh, enc_pricing *p)
     pmesh_release(a, p->planes, mesh->vertex_count, sizeof *p->planes);
     pmesh_release(a, p->moved, mesh->vertex_count, sizeof *p->moved);
     pmesh_release(a, p->unevenness, mesh->vertex_count, sizeof *p->unevenness);
+    enc_looks_destroy(mesh, &p->looks);
     *p = (enc_pricing){ 0 };
 }
 
@@ -77,6 +87,7 @@ void enc_pricing_begin(enc_pricing *p, const enc_surface *s, enc_taste taste,
     double sum = 0;
 
     p->taste = taste;
+    enc_looks_begin(&p->looks, s);
     if (first_time || p->metric == PMESH_MEMORYLESS)
         enc_star_all_planes(s, p->planes);
     for (uint32_t v = 0; v < s->mesh->vertex_count; v++) {
@@ -139,30 +150,84 @@ static double regularity(const enc_pricing *p, const enc_pair *pair,
                              p->taste.uneven * p->unevenness[pair->child]);
 }
 
+/* Of a pair whose parent goes to `middle` + x. */
+static double cost_of(const enc_pricing *p, const enc_surface *s,
+                      const enc_pair *pair, const double middle[3],
+                      const double x[3], const enc_offer *offer)
+{
+    const uint32_t ends[2] = { pair->parent, pair->child };
+    const uint32_t *source = s->mesh->source;
+    double at[2][3];
+    enc_cost_pair told = {
+        .kept = source ? source[pair->parent] : pair->parent,
+        .gone = source ? source[pair->child] : pair->child,
+        .ends = { at[0], at[1] },
+        .quadric = offer->quadric,
+        .distance = offer->distance,
+    };
+
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 2; k++)
+            at[k][i] = s->position[ends[k]][i];
+        told.middle[i] = middle[i];
+        told.half[i] = at[1][i] - middle[i];
+        told.place[i] = middle[i] + x[i];
+    }
+    if (p->rule.cost != PMESH_COST_QUADRIC)
+        return enc_cost(&p->rule, &told);
+    return p->taste.quadric * offer->quadric +
+           regularity(p, pair, 4 * dot(told.half, told.half));
+}
+
+/* Both ends' quadrics about the midpoint: without attributes, and with them.
+ * The pair is expected. */
+static void sum_both(const enc_pricing *p, const enc_surface *s,
+                     const enc_pair *pair, enc_quadric ends[2],
+                     const double half[3], bool now, enc_quadric *shape,
+                     enc_quadric *sum)
+{
+    sum_about_midpoint(&ends[0], &ends[1], half, shape);
+    *sum = *shape;
+    if (p->looks.count == 0)
+        return;
+    enc_looks_add_child(&p->looks, s, pair->child, now, &ends[0]);
+    if (parent_moves(p, s, pair))
+        enc_looks_add_parent(&p->looks, s, pair->parent, now, &ends[1]);
+    sum_about_midpoint(&ends[0], &ends[1], half, sum);
+}
+
 enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
                                const enc_pair *pair)
 {
-    const enc_quadric child = recall(p, pair->child);
-    const enc_quadric parent = recall(p, pair->parent);
-    double edge[3], value;
+    enc_quadric ends[2] = { recall(p, pair->child), recall(p, pair->parent) };
+    const double weight = ends[0].weight + ends[1].weight;
+    double edge[3], half[3], middle[3], x[3];
+    enc_offer offer = { .cost = 0 };
 
     difference(s->position[pair->child], s->position[pair->parent], edge);
+    for (int i = 0; i < 3; i++) {
+        half[i] = edge[i] / 2;
+        middle[i] = s->position[pair->parent][i] + half[i];
+        x[i] = -half[i];
+    }
+    enc_looks_expect(&p->looks, s, pair);
     if (!parent_moves(p, s, pair)) {
         const double back[3] = { -edge[0], -edge[1], -edge[2] };
-        value = enc_quadric_value(&child, back) + parent.c;
+        offer.distance = enc_quadric_value(&ends[0], back) + ends[1].c;
+        enc_looks_add_child(&p->looks, s, pair->child, false, &ends[0]);
+        offer.quadric = enc_quadric_value(&ends[0], back) + ends[1].c;
     } else {
-        const double half[3] = { edge[0] / 2, edge[1] / 2, edge[2] / 2 };
-        enc_quadric sum;
-        double x[3];
-
-        sum_about_midpoint(&child, &parent, half, &sum);
+        enc_quadric shape, sum;
+        sum_both(p, s, pair, ends, half, false, &shape, &sum);
         if (!enc_quadric_minimum(&sum, NULL, x) || !within_reach(x, half))
             best_of_three(&sum, half, x);
-        value = enc_quadric_value(&sum, x);
+        offer.distance = enc_quadric_value(&shape, x);
+        offer.quadric = enc_quadric_value(&sum, x);
     }
-    return (enc_offer){ .cost = p->taste.quadric * value +
-                                regularity(p, pair, dot(edge, edge)),
-                        .quadric = value };
+    enc_looks_forget(&p->looks, s, pair);
+    offer.distance = weight > 0 ? offer.distance / weight : 0;
+    offer.cost = cost_of(p, s, pair, middle, x, &offer);
+    return offer;
 }
 
 /* Where the parent should go, relative to the midpoint. */
@@ -222,34 +287,33 @@ enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
 {
     const int32_t *from = s->position[pair->child];
     const int32_t *to = s->position[pair->parent];
-    enc_quadric child, parent, sum;
+    enc_quadric ends[2], shape, sum;
     enc_offer offer = { .place = { to[0], to[1], to[2] } };
     double edge[3], half[3], middle[3], x[3];
 
     if (p->metric == PMESH_MEMORYLESS) {
-        enc_star_quadric(s, pair->child, &child);
-        enc_star_quadric(s, pair->parent, &parent);
+        enc_star_quadric(s, pair->child, &ends[0]);
+        enc_star_quadric(s, pair->parent, &ends[1]);
     } else {
-        child = recall(p, pair->child);
-        parent = recall(p, pair->parent);
+        ends[0] = recall(p, pair->child);
+        ends[1] = recall(p, pair->parent);
     }
     difference(from, to, edge);
     for (int i = 0; i < 3; i++) {
         half[i] = edge[i] / 2;
         middle[i] = to[i] + half[i];
     }
-    sum_about_midpoint(&child, &parent, half, &sum);
+    sum_both(p, s, pair, ends, half, true, &shape, &sum);
     if (parent_moves(p, s, pair)) {
         optimal_place(s, pair, &sum, half, x);
         round_place(s->mesh, &sum, middle, x, offer.place);
     }
     for (int i = 0; i < 3; i++)
         x[i] = offer.place[i] - middle[i];
-    const double value = enc_quadric_value(&sum, x);
-    offer.quadric = value;
-    offer.cost =
-        p->taste.quadric * value + regularity(p, pair, dot(edge, edge));
-    offer.distance = sum.weight > 0 ? value / sum.weight : 0;
+    offer.quadric = enc_quadric_value(&sum, x);
+    if (sum.weight > 0)
+        offer.distance = enc_quadric_value(&shape, x) / sum.weight;
+    offer.cost = cost_of(p, s, pair, middle, x, &offer);
     return offer;
 }
 

@@ -47,6 +47,7 @@ static bool attribute_is_legal(const pmesh_attribute_input *attribute,
         return false;
     }
     return (attribute->bits == 0 || bits_are_legal(attribute->bits)) &&
+           attribute->weight - attribute->weight == 0 &&
            (attribute->values || attribute->count == 0) &&
            (attribute->stride == 0 ||
             attribute->stride >= n * sizeof(float)) &&
@@ -271,6 +272,8 @@ static void load_positions(enc_importer *im)
             if (mesh->exact)
                 mesh->exact[vertex][k] = (float)p[k];
         }
+        if (mesh->source)
+            mesh->source[vertex] = v;
         vertex++;
     }
 }
@@ -303,6 +306,9 @@ static pmesh_status load_mesh(enc_importer *im)
     if (im->config->lossless)
         mesh->exact =
             pmesh_alloc(a, mesh->vertex_count, sizeof *mesh->exact);
+    if (im->config->cost == PMESH_COST_CUSTOM)
+        mesh->source =
+            pmesh_alloc(a, mesh->vertex_count, sizeof *mesh->source);
     im->source_count = mesh->face_count;
     im->source = pmesh_alloc(a, im->source_count, sizeof *im->source);
     if (mesh->material_count > 1)
@@ -310,6 +316,7 @@ static pmesh_status load_mesh(enc_importer *im)
             pmesh_alloc_zero(a, mesh->face_count, sizeof *mesh->material);
     if (!mesh->vertex || !mesh->position || !im->source ||
         (im->config->lossless && !mesh->exact) ||
+        (im->config->cost == PMESH_COST_CUSTOM && !mesh->source) ||
         (mesh->material_count > 1 && !mesh->material))
         return PMESH_E_MEMORY;
     number_vertices(im);

@@ -13,6 +13,7 @@ void enc_mesh_destroy(enc_mesh *mesh)
     const size_t corners = 3 * (size_t)mesh->face_count;
 
     pmesh_release(a, mesh->exact, mesh->vertex_count, sizeof *mesh->exact);
+    pmesh_release(a, mesh->source, mesh->vertex_count, sizeof *mesh->source);
     pmesh_release(a, mesh->position, mesh->vertex_count,
                   sizeof *mesh->position);
     pmesh_release(a, mesh->vertex, corners, sizeof *mesh->vertex);

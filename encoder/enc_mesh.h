@@ -39,6 +39,8 @@ typedef struct enc_mesh {
     uint32_t vertex_count;
     int32_t (*position)[3]; /* grid coordinates */
     float (*exact)[3];      /* positions of the input; NULL unless lossless */
+    uint32_t *source;       /* an input vertex of each; NULL unless a cost hook
+                               is to be told */
 
     uint32_t face_count;
     uint32_t *vertex;   /* per corner */
@@ -56,6 +58,7 @@ typedef struct enc_mesh {
     uint32_t value_count;   /* sum of pmesh_coded_components() */
     uint32_t attribute_count;
     pmesh_attribute attribute[PMESH_MAX_ATTRIBUTES];
+    float weight[PMESH_MAX_ATTRIBUTES]; /* in costs; see enc_looks.h */
 } enc_mesh;
 
 /*

@@ -138,7 +138,10 @@ static bool put_piece(const scene_file *f, pmesh_write write, void *user,
                            : p->part <= f->mux.in->mesh_count
                                ? &report->bytes_meshes
                                : &report->bytes_resources;
+    uint64_t *const told = f->mux.in->resource_offsets;
     *part += size;
+    if (told && p->part > f->mux.in->mesh_count)
+        told[p->part - f->mux.in->mesh_count - 1] = report->bytes + n;
     return put_chunk(write, user, report, start, n, p->data, p->size, p->crc);
 }
 
@@ -185,7 +188,9 @@ static bool input_is_sound(const pmesh_scene_input *in)
         (in->resource_count > 0 && !in->resources))
         return false;
     for (size_t i = 0; i < in->resource_count; i++)
-        if (in->resources[i].size > 0 && !in->resources[i].data)
+        if ((in->resources[i].size > 0 && !in->resources[i].data) ||
+            (in->resource_offsets &&
+             in->resources[i].size > PMESH_MAX_CHUNK_SIZE - 64))
             return false;
     for (size_t i = 0; i < in->mesh_count; i++) {
         const pmesh_scene_mesh_input *mesh = &in->meshes[i];

@@ -234,12 +234,26 @@ static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
                           : profile == PMESH_BALANCED && fine ? FINE
                           : coarse                            ? BEST
                                                               : QUALITY;
+    if (run->config->cost != PMESH_COST_QUADRIC)
+        plan = BEST; /* strictly in its order */
     if (run->joins_sheets)
         plan.guard = 1; /* there is little else */
     plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)
         plan.limit = 1;
     return plan;
+}
+
+/* Allows what is not allowed as long as there is anything else; false if
+ * nothing is left to allow. */
+static bool relent(enc_run *run)
+{
+    bool *next = run->mesh->joined && !run->joins_sheets ? &run->joins_sheets
+                 : run->pricing.looks.guarded            ? &run->lets_turn
+                                                         : NULL;
+    if (!next || *next)
+        return false;
+    return *next = true;
 }
 
 static void run_batches(enc_run *run, uint32_t variant)
@@ -253,17 +267,25 @@ static void run_batches(enc_run *run, uint32_t variant)
         const uint32_t n = run->surface.vertex_count;
         const uint32_t taken = enc_batch_contract(run, &plan);
 
-        const bool dry = taken <= n / POOR_SHARE;
-        if (taken == 0 && (!run->mesh->joined || run->joins_sheets))
-            break;
         if (taken > 0)
             out->batch_first[++out->batch_count] = out->contraction_count;
         poor = taken < n / POOR_SHARE ? poor + 1 : 0;
-        if (dry && run->mesh->joined && !run->joins_sheets) {
-            run->joins_sheets = true;
+        if (taken > n / POOR_SHARE)
+            continue;
+        if (relent(run))
             poor = 0;
-        }
+        else if (taken == 0)
+            break;
     }
+}
+
+static pmesh_simplify_end reason(const enc_run *run)
+{
+    if (run->surface.face_count <= run->face_target)
+        return PMESH_END_FACES;
+    if (run->surface.vertex_count <= run->vertex_target)
+        return PMESH_END_VERTICES;
+    return run->too_far ? PMESH_END_ERROR : PMESH_END_EXHAUSTED;
 }
 
 /* The parent of each vertex goes into scratch that is free by now. */
@@ -298,6 +320,7 @@ pmesh_status enc_schedule_build(const enc_mesh *mesh,
     if (status == PMESH_OK) {
         set_targets(&run);
         run_batches(&run, variant);
+        out->end = reason(&run);
         out->position = run.surface.position;
         run.surface.position = NULL;
         if (run.cancelled || run.starved)

@@ -24,7 +24,7 @@
 #ifndef PMESH_ENCODE_H
 #define PMESH_ENCODE_H
 
-#include "format/pmesh.h"
+#include "encoder/pmesh_simplify.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -45,6 +45,8 @@ typedef struct pmesh_attribute_input {
     size_t count;
     size_t stride;
     const uint32_t *indices;
+    float weight; /* of a difference of 1 in the costs; 0: the config's default
+                     for the kind, negative: none */
 } pmesh_attribute_input;
 
 /*
@@ -111,6 +113,7 @@ typedef struct pmesh_encoder_config {
     pmesh_topology topology;   /* default PMESH_TOPOLOGY_AUTO */
     int lossless;              /* non-zero: a last layer with the input's
                                   positions, bit for bit, see below */
+    /* Stops, of which the first one that is reached counts. */
     uint32_t base_faces;       /* stop at this many faces; 0: about 200 */
     uint32_t base_vertices;    /* ... or this many vertices; 0: no such stop */
     double base_ratio;         /* ... or this share of the faces; 0: no stop */
@@ -123,6 +126,22 @@ typedef struct pmesh_encoder_config {
     pmesh_base_encode base_encoder;
     pmesh_base_decode base_decoder; /* the numbers it gives are the file's */
     void *base_user;                /* of both hooks */
+    /* How much attributes count in the costs: by how much of the model's
+     * largest extent a difference of 1 does, per component. 0: no say at all,
+     * as if there was no such attribute. No triangle of texture coordinates with
+     * weight turns over, or loses its area, from level to level as long as
+     * anything else can be contracted. */
+    double normal_weight;      /* default 0.01 */
+    double texcoord_weight;    /* default 0.1 */
+    double color_weight;       /* default 0.03 */
+    double generic_weight;     /* default 0 */
+    pmesh_cost cost;           /* default PMESH_COST_QUADRIC; with another,
+                                  contractions come strictly in its order, batch
+                                  by batch, whatever the profile */
+    double camera[3];          /* of the two camera costs, model units */
+    pmesh_cost_hook cost_hook; /* of PMESH_COST_CUSTOM; asked about directed
+                                  contractions: the pair's second vertex goes */
+    void *cost_user;           /* of the hook */
     uint32_t threads;          /* 0 or 1: this thread only */
     pmesh_progress progress;   /* NULL: none */
     void *progress_user;
@@ -159,6 +178,8 @@ typedef struct pmesh_encode_report {
     uint32_t faces, vertices, wedges; /* full detail of the file */
     pmesh_base_coder base_coder;  /* the one that was used */
     uint32_t base_faces, base_vertices;
+    pmesh_simplify_end end;       /* why the base mesh is no coarser; exhausted:
+                                     nothing was left to contract */
     uint32_t level_count;
     pmesh_level levels[PMESH_MAX_LEVELS];
     uint64_t bytes;               /* the file */

@@ -50,6 +50,9 @@ typedef struct pmesh_scene_input {
     size_t resource_count; /* at most 65536 */
     size_t early_count;    /* the first of the resources, which are needed to
                               show anything, go before the meshes */
+    uint64_t *resource_offsets; /* NULL, or room for resource_count: each
+                                   resource stays in one piece, and this is told
+                                   where it starts in the file */
 } pmesh_scene_input;
 
 typedef struct pmesh_scene_report {

@@ -50,7 +50,7 @@ export function wrap(json, buffers, stream, uri) {
             buffer: 0, byteOffset: add(stream), byteLength: stream.length,
         });
     made.buffers = [{ byteLength: size }];
-    made.extensions = { ...made.extensions, [NAME]: { stream: place } };
+    made.extensions = { ...made.extensions, [NAME]: place };
     const bin = new Uint8Array(size);
     for (const [at, bytes] of all)
         bin.set(bytes, at);

@@ -94,4 +94,7 @@ run_tests $web/browser/three.check.mjs
 run_tests $web/browser/gltf.check.mjs
 run_tests $web/browser/worker.check.mjs
 run_tests $web/browser/viewer.check.mjs
+THREE=$PWD/$web/viewer/node_modules/three
+export THREE
+run_tests $web/browser/progressive.check.mjs
 finish

@@ -31,8 +31,8 @@ export class ProgressivePlugin {
     #parser;
     #options;
     #scene;      // of pmesh; of a .glb made by afterRoot()
-    #resources = new Map(); // number -> { promise, resolve }: not there yet
-    #left = {};  // of the document: what is added when resources are there
+    #late = new Map(); // what is not there yet -> { promise, resolve, take }
+    #left = null; // of the document: what is added when that is there
 
     constructor(parser, options = {}) {
         this.#parser = parser;
@@ -44,9 +44,10 @@ export class ProgressivePlugin {
         return this.#parser.json.extensions?.[NAME];
     }
 
+    // Where only a part of the file is there, shapes come first.
     beforeRoot() {
         const { json } = this.#parser;
-        if (!this.#options.scene)
+        if (!this.#options.scene && !this.#options.tail)
             return null;
         this.#left = { materials: json.materials, animations: json.animations };
         json.materials = withoutTextures(json.materials);
@@ -54,30 +55,41 @@ export class ProgressivePlugin {
         return null;
     }
 
-    // A buffer of a .pmesh scene is a resource; null leaves it to the loader.
+    // A buffer of a .pmesh scene is a resource, and a view may lie in the tail of
+    // a .glb; null leaves it to the loader.
     loadBufferView(number) {
-        if (!this.#options.scene)
+        const { scene, tail } = this.#options;
+        const { bufferViews } = this.#parser.json, view = bufferViews[number];
+        const first = view.byteOffset ?? 0, size = view.byteLength;
+        if (scene)
+            return this.#buffer(view.buffer).then((buffer) =>
+                buffer.slice(first, first + size));
+        if (!tail || view.buffer !== 0)
             return null;
-        const view = this.#parser.json.bufferViews[number];
-        const first = view.byteOffset ?? 0;
-        return this.#buffer(view.buffer).then((buffer) =>
-            buffer.slice(first, first + view.byteLength));
+        const start = bufferViews[this.#extension.bufferView].byteOffset ?? 0;
+        return first < start ? null : this.#wait(`view ${number}`, () =>
+            tail.take(first - start, size)?.buffer);
     }
 
     #buffer(number) {
         const { scene, coarse } = this.#options;
-        if (number === coarse.number)
-            return Promise.resolve(coarse.data);
-        const bytes = scene.resource(number);
+        return number === coarse.number ? Promise.resolve(coarse.data) :
+            this.#wait(number, () => scene.resource(number)?.buffer);
+    }
+
+    // `take` gives something as soon as it is there.
+    #wait(key, take) {
+        const bytes = take();
         if (bytes)
-            return Promise.resolve(bytes.buffer);
-        if (!this.#resources.has(number))
-            this.#resources.set(number, deferred());
-        return this.#resources.get(number).promise;
+            return Promise.resolve(bytes);
+        if (!this.#late.has(key))
+            this.#late.set(key, { ...deferred(), take });
+        return this.#late.get(key).promise;
     }
 
     async afterRoot(result) {
-        if (!this.#scene && !this.#extension?.stream)
+        const { bufferView, uri } = this.#extension ?? {};
+        if (!this.#scene && bufferView === undefined && uri === undefined)
             return;
         const handle = new Progressive(this.#parser, result, this.#options,
             await this.#primitives());
@@ -118,36 +130,34 @@ export class ProgressivePlugin {
 
     // Where the stream of a .glb or .gltf is.
     async #open() {
-        const { stream } = this.#extension, { tail } = this.#options;
+        const { bufferView, uri } = this.#extension, { tail } = this.#options;
         if (tail)
             return tail;
-        if (stream.uri === undefined)
+        if (uri === undefined)
             return new Source(await this.#parser.getDependency("bufferView",
-                stream.bufferView));
+                bufferView));
         const { path } = this.#parser.options;
-        return new Source(LoaderUtils.resolveURL(stream.uri, path),
-            this.#options);
+        return new Source(LoaderUtils.resolveURL(uri, path), this.#options);
     }
 
-    // Gives resources to those who wait for them.
+    // Gives what has come to those who wait for it.
     #arrive() {
-        for (const [number, { resolve }] of this.#resources) {
-            const bytes = this.#scene.resource(number);
+        for (const [key, { resolve, take }] of this.#late) {
+            const bytes = take();
             if (bytes) {
-                this.#resources.delete(number);
-                resolve(bytes.buffer);
+                this.#late.delete(key);
+                resolve(bytes);
             }
         }
     }
 
     // Textures and animations, as they arrive.
     async #finish(handle) {
-        const { materials = [], animations = [] } = this.#left;
         const { json, cache } = this.#parser;
-        if (!this.#options.scene)
+        if (!this.#left)
             return;
-        json.materials = materials;
-        json.animations = animations;
+        Object.assign(json, this.#left);
+        const { materials = [], animations = [] } = json;
         await Promise.all([
             ...materials.map(async (unused, i) => {
                 cache.remove(`material:${i}`);

@@ -7,9 +7,12 @@ const GLTF = 0x46546c67, JSON_CHUNK = 0x4e4f534a;
 const PMESH = [0x89, 0x50, 0x4d, 0x53, 0x48];
 
 // A source whose first bytes have been read: `have` of them, from `start` on,
-// are still to be handed out; it ends after `length`.
+// are still to be handed out; it ends after `length`, and keeps what passes if
+// that is known.
 export class Rest {
     expected = Infinity;
+    #kept = null;
+    #size = 0;
     #source;
     #have;
     #start;
@@ -20,6 +23,14 @@ export class Rest {
         this.#have = have;
         this.#start = start;
         this.#length = length;
+        if (length < Infinity)
+            this.#kept = new Uint8Array(length);
+    }
+
+    // A copy of bytes that have passed, or null.
+    take(first, size) {
+        return first + size <= this.#size ?
+            this.#kept.slice(first, first + size) : null;
     }
 
     async next() {
@@ -31,7 +42,13 @@ export class Rest {
         if (this.#start > 0 && this.generation > 0)
             throw new PmeshError("the file was replaced while it was read",
                 "http");
-        return bytes && (bytes.length > left ? bytes.subarray(0, left) : bytes);
+        return bytes && this.#keep(bytes.subarray(0, left));
+    }
+
+    #keep(bytes) {
+        this.#kept?.set(bytes, this.#size);
+        this.#size += bytes.length;
+        return bytes;
     }
 
     // Of the part that this is a source of, handed out.
@@ -115,7 +132,7 @@ async function tailOf(head, start, extension) {
     const end = 20 + view.getUint32(12, true);
     const bytes = (await head.read(end)).subarray(20, end);
     const json = JSON.parse(new TextDecoder().decode(bytes));
-    const number = json.extensions?.[extension]?.stream?.bufferView;
+    const number = json.extensions?.[extension]?.bufferView;
     const at = json.bufferViews?.[number];
     return at?.buffer === 0 ?
         { at: end + 8 + (at.byteOffset ?? 0), length: at.byteLength } : null;
