@@ -52,9 +52,10 @@ tools/web/build.sh $web/pmesh 0.0.0 || exit 1
     "$PMESH" bake -q "$dir/a.ply" -o "$dir/a.pmesh" &&
     "$PMESH" bake -q "$dir/a.ply" -o "$dir/b.pmesh" --no-attributes &&
     "$PMESH" bake -q "$dir/a.ply" -o "$dir/d.pmesh" --base draco || exit 1
-mkdir "$dir/zoo" && python3 tests/scene/zoo.py "$dir/zoo" || exit 1
+mkdir -p "$dir/zoo/tail" && python3 tests/scene/zoo.py "$dir/zoo" || exit 1
 for scene in "$dir"/zoo/*.glb; do
-    "$PMESH" bake -q "$scene" -o "${scene%.glb}.pmesh" || exit 1
+    "$PMESH" bake -q "$scene" -o "${scene%.glb}.pmesh" &&
+        "$PMESH" bake -q "$scene" -o "$dir/zoo/tail/${scene##*/}" || exit 1
 done
 PMESH_ZOO=$dir/zoo
 PMESH_DRACO=$dir/d.pmesh

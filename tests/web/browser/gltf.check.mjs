@@ -148,6 +148,32 @@ test("the plugin alone takes both packings, and any loader the coarse one",
         }
     });
 
+test("a .glb of pmesh bake sharpens in one request, and by the plugin alone",
+    async () => {
+        for (const name of PLAIN) {
+            const body = readFileSync(join(PMESH_ZOO, "tail", `${name}.glb`));
+            const server = await serve(body, { rate: 128 });
+            const loader = new GLTFLoader();
+            loader.register((parser) => new ProgressivePlugin(parser));
+            try {
+                for (const gltf of [await load(server.url, new GLTFLoader()),
+                    await loader.parseAsync(new Uint8Array(body).buffer, "")]) {
+                    await gltf.progressive.done;
+                    await check(gltf, name);
+                    const { scene } = gltf.progressive;
+                    assert.equal(scene.progress.complete, true);
+                    assert.equal(scene.faceCount, scene.header.faces);
+                    const json = JSON.parse(await scene.document());
+                    assert.equal(gltf.animations.length,
+                        json.animations?.length ?? 0);
+                }
+                assert.equal(server.log.length, 1);
+            } finally {
+                await server.close();
+            }
+        }
+    });
+
 test("ends at a target, and goes on by Range", async () => {
     const packings = [await packed("morphs"), read("morphs")];
     for (const body of packings) {
@@ -228,9 +254,11 @@ scene.background = new Color(0xf6f4f0);
 const key = new DirectionalLight(0xffffff, 2);
 key.position.set(-1, 2, 3);
 scene.add(new AmbientLight(0xffffff, 1.2), key);
+globalThis.scene = scene;
 globalThis.draw = () => renderer.render(scene, camera);
 globalThis.show = async (url, options) => {
     const gltf = await load(url, new GLTFLoader(), options);
+    await gltf.progressive.ready;
     scene.add(gltf.scene);
     const { center, radius } = new Box3().setFromObject(gltf.scene)
         .getBoundingSphere(new Sphere());
@@ -264,6 +292,7 @@ test("textures come behind the shapes, in a page", async () => {
     const { chromium } = await import("playwright-core");
     mkdirSync(SHOTS, { recursive: true });
     const files = { "/": await bundle(join(PACKAGE, "../viewer")) };
+    const glb = readFileSync(join(PMESH_ZOO, "tail", "textures.glb"));
     const server = await serve(read("textures"), { files, rate: 2 });
     const browser = await chromium.launch({
         executablePath: CHROMIUM,
@@ -286,6 +315,15 @@ test("textures come behind the shapes, in a page", async () => {
         writeFileSync(join(SHOTS, "gltf-full.png"), await page.screenshot());
         assert.ok(coarse < fine);
         assert.ok((await page.evaluate(() => textures())).some((has) => has));
+        Object.assign(server, { body: glb, rate: 64 });
+        assert.ok(await page.evaluate(async () => {
+            scene.remove(gltf.scene);
+            await show("/mesh.glb");
+            await gltf.progressive.done;
+            draw();
+            return textures().some((has) => has);
+        }));
+        writeFileSync(join(SHOTS, "gltf-tail.png"), await page.screenshot());
         assert.deepEqual(failures, []);
     } finally {
         await browser.close();
