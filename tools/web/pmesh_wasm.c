@@ -23,7 +23,7 @@ enum { INPUT_SIZE = 65536, PAGE = 65536, INFO_SIZE = 512 };
 
 /* Of a mesh vertex, to inflate: pmesh_decoder_inflate_room() tells it of the
  * visible mesh alone, which has not come when the room is made. */
-enum { ROOM = 64 };
+enum { INFLATE_ROOM = 64 };
 
 typedef struct mesh {
     pmesh_decoder *dec;
@@ -189,7 +189,7 @@ EXPORT(bind) int bind(mesh *m, int with_morph, int with_inflation)
     if (with_morph)
         good = good && (m->morph = malloc(positions)) != NULL;
     if (with_inflation) {
-        m->room_size = ROOM * (size_t)h.mesh_vertices;
+        m->room_size = INFLATE_ROOM * (size_t)h.mesh_vertices;
         good = good && (m->inflated = malloc(positions)) != NULL;
         good = good && (m->room = malloc(m->room_size)) != NULL;
     }
