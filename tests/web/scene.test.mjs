@@ -9,7 +9,7 @@ import { PmeshError, Source } from "pmesh";
 import { Scene, SceneDecoder, openScene } from "pmesh/scene";
 import { serve } from "./server.mjs";
 
-const { PMESH, PMESH_ZOO } = process.env;
+const { PMESH, PMESH_GOLDEN, PMESH_ZOO } = process.env;
 const files = readdirSync(PMESH_ZOO).filter((name) => name.endsWith(".pmesh"))
     .map((name) => join(PMESH_ZOO, name));
 
@@ -34,6 +34,14 @@ test("budgets show as many faces as native code", async () => {
         scene.refine({ error });
         assert.ok(scene.error <= error);
     }
+});
+
+test("the golden scene is decoded whole, with any document", async () => {
+    const scene = await openScene(readFileSync(join(PMESH_GOLDEN,
+        "scene.pmesh")));
+    await scene.load();
+    assert.equal(scene.progress.complete, true);
+    assert.equal(scene.faceCount, scene.header.faces);
 });
 
 test("ranges of all meshes reproduce their buffers", async () => {
