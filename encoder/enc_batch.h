@@ -66,6 +66,8 @@ typedef struct enc_run {
     enc_role *role;      /* per vertex; NULL unless joined */
     float *drift;        /* per vertex: squared distance from the original */
     uint32_t face_target, vertex_target;
+    uint32_t *segment_size; /* per segment of the guide: its vertices; NULL
+                               unless segments have shares */
     double error_limit;    /* squared, in steps */
     bool too_far;          /* the batch left out a pair because of it */
     double parallel_limit; /* cost up to which parallel pairs are preferred */
