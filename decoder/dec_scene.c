@@ -272,11 +272,28 @@ static void show(pmesh_scene *s, pmesh_scene_shown *shown)
     }
 }
 
+static const pmesh_scene_target everything = { .faces = 0 };
+
+pmesh_status pmesh_scene_share(pmesh_scene *s, const pmesh_scene_target *target,
+                               uint32_t *faces)
+{
+    pmesh_status status = PMESH_NEED_DATA;
+
+    if (!s->has_header)
+        return status;
+    share(s, target ? target : &everything);
+    for (uint32_t i = 0; i < s->head.mesh_count; i++) {
+        faces[i] = has_base(&s->mesh[i]) ? s->mesh[i].faces : 0;
+        if (faces[i] > 0)
+            status = PMESH_OK;
+    }
+    return status;
+}
+
 pmesh_status pmesh_scene_refine(pmesh_scene *s,
                                 const pmesh_scene_target *target,
                                 pmesh_scene_shown *shown)
 {
-    static const pmesh_scene_target everything = { .faces = 0 };
     pmesh_scene_shown unwanted;
 
     if (!s->has_header)

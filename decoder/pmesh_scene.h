@@ -150,6 +150,17 @@ PMESH_API pmesh_status pmesh_scene_refine(pmesh_scene *scene,
                                           const pmesh_scene_target *target,
                                           pmesh_scene_shown *shown);
 
+/*
+ * Only says how refine() would share the target: faces of each mesh, 0 before
+ * its base mesh is there; `faces` holds mesh_count numbers. For callers who
+ * refine each mesh by pmesh_decoder_refine(): with the ranges that changed, a
+ * budget of work for a frame, or a look at what is in the picture. Returns as
+ * refine().
+ */
+PMESH_API pmesh_status pmesh_scene_share(pmesh_scene *scene,
+                                         const pmesh_scene_target *target,
+                                         uint32_t *faces);
+
 #ifdef __cplusplus
 }
 #endif

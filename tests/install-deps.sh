@@ -75,6 +75,8 @@ group_cross() {
 group_web() {
     need clang program clang
     need lld program wasm-ld
+    need binaryen program wasm-opt
+    need zopfli program zopfli
     need nodejs program node
     need npm program npm
     need chromium program chromium

@@ -9,9 +9,10 @@ import sys
 
 from gltf import Gltf
 
-KINDS = {'object': dict, 'array': list, 'integer': int, 'boolean': bool}
+KINDS = {'object': dict, 'array': list, 'integer': int, 'boolean': bool,
+         'string': str}
 WORDS = {'description', 'type', 'properties', 'required', 'items', 'enum',
-         'additionalProperties', 'minimum', '$ref'}
+         'additionalProperties', 'minimum', 'oneOf', '$ref'}
 
 with open('format/PMESH_progressive.schema.json', encoding='utf-8') as f:
     SCHEMA = json.load(f)
@@ -25,6 +26,9 @@ def check(value, rule, where):
         good = isinstance(value, KINDS[rule['type']])
         assert good and (rule['type'] == 'boolean' or value is not True), where
     assert value in rule.get('enum', [value]), where
+    if 'oneOf' in rule:
+        assert sum(set(one['required']) <= set(value)
+                   for one in rule['oneOf']) == 1, where
     assert 'minimum' not in rule or value >= rule['minimum'], where
     for item in value if 'items' in rule else []:
         check(item, rule['items'], where)

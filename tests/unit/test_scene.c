@@ -246,6 +246,33 @@ TEST(scene_budgets_are_met_as_well_as_levels_can)
     unmake(m);
 }
 
+TEST(scene_shares_what_refine_would_show)
+{
+    enum { COUNT = 12 };
+    made *m = make(COUNT, 0);
+    pmesh_status status;
+    pmesh_scene_shown all;
+    uint32_t share[COUNT];
+    pmesh_scene *s = decode(m->file.data, m->file.size, 4096, &status);
+    pmesh_scene_refine(s, NULL, &all);
+    for (uint64_t faces = 1; faces < all.faces; faces += all.faces / 7) {
+        const pmesh_scene_target target = { .faces = faces };
+        CHECK(pmesh_scene_refine(s, &target, NULL) == PMESH_OK);
+        CHECK(pmesh_scene_share(s, &target, share) == PMESH_OK);
+        for (uint32_t i = 0; i < COUNT; i++) {
+            pmesh_view view;
+            pmesh_decoder *dec = pmesh_scene_mesh(s, i);
+            CHECK(pmesh_decoder_mesh(dec, &view) == PMESH_OK);
+            CHECK(view.face_count <= share[i] && view.face_count + 2 > share[i]);
+        }
+    }
+    pmesh_scene_destroy(s);
+    s = decode(m->file.data, 8, 8, &status);
+    CHECK(pmesh_scene_share(s, NULL, share) == PMESH_NEED_DATA);
+    pmesh_scene_destroy(s);
+    unmake(m);
+}
+
 TEST(scene_levels_put_the_worst_mesh_first)
 {
     made *m = make(20, 0);
