@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "tools/gltf_document.h"
+#include "tools/pack.h"
 
 namespace {
 
@@ -196,7 +197,9 @@ void read(const gltf_source &source, holder *held, scene_parts *out)
 
     const gltf_parts parts =
         gltf_take_apart(source, model, streams, budget, &out->notes);
-    put(&out->document, parts.document.data(), parts.document.size());
+    if (!pack_zlib(parts.document.data(), parts.document.size(),
+                   &out->document))
+        throw std::bad_alloc();
     out->resources = static_cast<asset_bytes *>(
         calloc(parts.resources.size() + 1, sizeof *out->resources));
     if (!out->resources)
@@ -224,6 +227,23 @@ bool has_looks(const gltf_json &in)
     return false;
 }
 
+/* Whether some primitive has an attribute of its author's own. */
+bool has_own_attributes(const gltf_json &in)
+{
+    if (!is_list(in, "meshes", 1))
+        return false;
+    for (const gltf_json &mesh : in["meshes"]) {
+        if (!mesh.is_object() || !is_list(mesh, "primitives", 1))
+            continue;
+        for (const gltf_json &p : mesh["primitives"])
+            if (p.is_object() && p.contains("attributes"))
+                for (const auto &item : p["attributes"].items())
+                    if (item.key()[0] == '_')
+                        return true;
+    }
+    return false;
+}
+
 } // namespace
 
 bool scene_is_worth_it(const uint8_t *data, size_t size)
@@ -244,7 +264,7 @@ bool scene_is_worth_it(const uint8_t *data, size_t size)
                 return true;
         return is_list(in, "meshes", 2) || is_list(in, "scenes", 2) ||
                is_list(in, "nodes", 2) || in.contains("extensions") ||
-               has_looks(in);
+               has_looks(in) || has_own_attributes(in);
     } catch (...) {
         return false;
     }

@@ -6,15 +6,17 @@
  */
 #include "tools/scene_write.h"
 
-#include <memory>
+#include <cstring>
 #include <new>
 
-#include "tools/gltf_document.h"
-#include "tools/scene_geometry.h"
+#include "tools/pack.h"
+#include "tools/scene_writer.h"
 
 namespace {
 
+enum { MAX_DOCUMENT = 1 << 28 };
 enum { TARGET_VERTICES = 34962, TARGET_INDICES = 34963 };
+#define GLTF_MESHOPT "EXT_meshopt_compression"
 
 /* One grey pixel, in the place of an image that has not arrived. */
 const uint8_t pixel[] = {
@@ -26,45 +28,11 @@ const uint8_t pixel[] = {
     0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82
 };
 
-class writer {
-public:
-    writer(pmesh_scene *from, scene_style how, asset *warn)
-        : scene(from), style(how), notes(warn)
-    {
-    }
-    void write(asset_bytes *out);
-
-private:
-    pmesh_scene *scene;
-    scene_style style;
-    asset *notes;
-    gltf_document doc;
-    gltf_bytes bin;
-    std::vector<size_t> free_accessors, free_views; /* the last is next */
-    std::map<uint32_t, std::unique_ptr<scene_geometry>> meshes;
-    std::vector<size_t> resource_start; /* in bin */
-
-    void open();
-    std::vector<size_t> free_list(const char *name);
-    size_t place(const char *list, std::vector<size_t> &free,
-                 gltf_document value);
-    void align(size_t to);
-    size_t add(const scene_array &data, int target, bool bounds);
-    scene_form form(const gltf_document &record) const;
-    scene_geometry &geometry(const gltf_document &record);
-    void primitive(gltf_document &p);
-    void primitives();
-    void drop_animations();
-    void missing_images(const std::vector<bool> &missing);
-    void resources();
-    void move_views();
-    void drop_marks();
-    void put_glb(const std::string &json, asset_bytes *out) const;
-};
+} // namespace
 
 /* ---- reading the document ----------------------------------------------- */
 
-std::vector<size_t> writer::free_list(const char *name)
+std::vector<size_t> scene_writer::free_list(const char *name)
 {
     std::vector<size_t> numbers;
     const size_t size = doc.contains(name) ? doc.at(name).size() : 0;
@@ -81,17 +49,33 @@ std::vector<size_t> writer::free_list(const char *name)
     return numbers;
 }
 
-void writer::open()
+/* As text, at most as long as a document may be. */
+void scene_writer::read_document(asset_bytes *plain)
 {
     const pmesh_scene_bytes text = pmesh_scene_document(scene);
+    const auto size = static_cast<size_t>(text.size);
+    pmesh_scene_header header = {};
+
+    if (!text.data || text.arrived < text.size)
+        throw std::runtime_error("cut off before the scene's document");
+    pmesh_scene_get_header(scene, &header);
+    if (header.document_form == PMESH_DOCUMENT_PLAIN)
+        asset_put(plain, text.data, size);
+    else if (!unpack_zlib(text.data, size, MAX_DOCUMENT, plain))
+        throw std::runtime_error("the document cannot be unpacked");
+}
+
+void scene_writer::open()
+{
+    asset_bytes plain = {};
+    const std::unique_ptr<asset_bytes, void (*)(asset_bytes *)> text(
+        &plain, asset_bytes_free);
     gltf_source source = {};
     asset unused = {};
     asset_error error;
 
-    if (!text.data || text.arrived < text.size)
-        throw std::runtime_error("cut off before the scene's document");
-    if (!gltf_open(text.data, static_cast<size_t>(text.size), &source, &unused,
-                   &error))
+    read_document(&plain);
+    if (!gltf_open(plain.data, plain.size, &source, &unused, &error))
         throw std::runtime_error(std::string("the document is no glTF: ") +
                                  error.what);
     doc = gltf_document::parse(source.json, source.json + source.json_size);
@@ -106,7 +90,7 @@ void writer::open()
 
 /* ---- new accessors ------------------------------------------------------ */
 
-size_t writer::place(const char *list, std::vector<size_t> &free,
+size_t scene_writer::place(const char *list, std::vector<size_t> &free,
                      gltf_document value)
 {
     if (free.empty()) {
@@ -119,12 +103,12 @@ size_t writer::place(const char *list, std::vector<size_t> &free,
     return at;
 }
 
-void writer::align(size_t to)
+void scene_writer::align(size_t to)
 {
     bin.resize((bin.size() + to - 1) / to * to);
 }
 
-gltf_document numbers_of(const std::vector<float> &values)
+static gltf_document numbers_of(const std::vector<float> &values)
 {
     gltf_document list = gltf_document::array();
     for (const float v : values)
@@ -132,20 +116,47 @@ gltf_document numbers_of(const std::vector<float> &values)
     return list;
 }
 
-/* Puts data into BIN; the number of their accessor. */
-size_t writer::add(const scene_array &data, int target, bool bounds)
+/* Puts data into BIN; their view. Packed ones would lie in a second buffer, of
+ * which there is nothing but its size. */
+gltf_document scene_writer::view_of(const scene_array &data, int target)
 {
-    static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
-    gltf_document view = { { "buffer", 0 } }, accessor;
+    const bool indices = target == TARGET_INDICES;
+    gltf_document view = { { "buffer", style.meshopt ? 1 : 0 } };
 
     align(4);
-    view["byteOffset"] = bin.size();
+    view["byteOffset"] = style.meshopt ? unpacked : bin.size();
     view["byteLength"] = data.bytes.size();
     if (data.stride > 0)
         view["byteStride"] = data.stride;
     view["target"] = target;
-    bin.insert(bin.end(), data.bytes.begin(), data.bytes.end());
-    accessor["bufferView"] = place("bufferViews", free_views, std::move(view));
+    if (style.meshopt) {
+        const size_t stride = data.bytes.size() / data.count;
+        const gltf_bytes packed =
+            gltf_pack(data.bytes, data.count, stride, indices);
+        view["extensions"][GLTF_MESHOPT] = {
+            { "buffer", 0 },
+            { "byteOffset", bin.size() },
+            { "byteLength", packed.size() },
+            { "byteStride", stride },
+            { "count", data.count },
+            { "mode", indices ? "TRIANGLES" : "ATTRIBUTES" }
+        };
+        unpacked += (data.bytes.size() + 3) / 4 * 4;
+        bin.insert(bin.end(), packed.begin(), packed.end());
+    } else {
+        bin.insert(bin.end(), data.bytes.begin(), data.bytes.end());
+    }
+    return view;
+}
+
+/* The number of the data's accessor. */
+size_t scene_writer::add(const scene_array &data, int target, bool bounds)
+{
+    static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
+    gltf_document accessor;
+
+    accessor["bufferView"] =
+        place("bufferViews", free_views, view_of(data, target));
     accessor["componentType"] = data.component_type;
     if (data.normalised)
         accessor["normalized"] = true;
@@ -158,7 +169,7 @@ size_t writer::add(const scene_array &data, int target, bool bounds)
     return place("accessors", free_accessors, std::move(accessor));
 }
 
-scene_form writer::form(const gltf_document &record) const
+scene_form scene_writer::form(const gltf_document &record) const
 {
     static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
     const std::string type = record.at("type").get<std::string>();
@@ -172,7 +183,7 @@ scene_form writer::form(const gltf_document &record) const
     return f;
 }
 
-scene_geometry &writer::geometry(const gltf_document &record)
+scene_geometry &scene_writer::geometry(const gltf_document &record)
 {
     const auto number = record.at("mesh").get<uint32_t>();
     auto &mesh = meshes[number];
@@ -182,7 +193,7 @@ scene_geometry &writer::geometry(const gltf_document &record)
     return *mesh;
 }
 
-void writer::primitive(gltf_document &p)
+void scene_writer::primitive(gltf_document &p)
 {
     const gltf_document record = p["extensions"][GLTF_PROGRESSIVE];
     scene_geometry &mesh = geometry(record);
@@ -207,22 +218,36 @@ void writer::primitive(gltf_document &p)
                            name == "POSITION");
         p["targets"].push_back(std::move(to));
     }
-    gltf_erase_extension(p, GLTF_PROGRESSIVE);
+    if (!style.stream)
+        gltf_erase_extension(p, GLTF_PROGRESSIVE);
 }
 
-void writer::primitives()
+/* Whether any of the mesh's primitives is coded: these get accessors. */
+bool scene_writer::fill(gltf_document &mesh)
 {
-    for (gltf_document &mesh : doc.at("meshes"))
-        for (gltf_document &p : mesh.at("primitives"))
-            if (p.contains("extensions") &&
-                p["extensions"].contains(GLTF_PROGRESSIVE))
-                primitive(p);
+    bool any = false;
+    for (gltf_document &p : mesh.at("primitives"))
+        if (p.contains("extensions") &&
+            p["extensions"].contains(GLTF_PROGRESSIVE)) {
+            primitive(p);
+            any = true;
+        }
+    return any;
+}
+
+void scene_writer::primitives()
+{
+    if (style.lod_count > 0)
+        lods();
+    else
+        for (gltf_document &mesh : doc.at("meshes"))
+            fill(mesh);
 }
 
 /* ---- resources ---------------------------------------------------------- */
 
 /* Without their data; their accessors become free places. */
-void writer::drop_animations()
+void scene_writer::drop_animations()
 {
     std::vector<bool> used;
     asset_warn(notes, "the animations have not arrived and are left out");
@@ -243,7 +268,7 @@ void writer::drop_animations()
 }
 
 /* Points the images at the pixel, whose view takes the place of theirs. */
-void writer::missing_images(const std::vector<bool> &missing)
+void scene_writer::missing_images(const std::vector<bool> &missing)
 {
     size_t count = 0;
     for (gltf_document &image : doc["images"]) {
@@ -263,7 +288,7 @@ void writer::missing_images(const std::vector<bool> &missing)
 }
 
 /* Moves each into BIN, or what stands for it. */
-void writer::resources()
+void scene_writer::resources()
 {
     pmesh_scene_header header = {};
     std::vector<bool> missing, image;
@@ -294,6 +319,12 @@ void writer::resources()
         missing_images(missing);
     for (uint32_t i = 0; i < header.resource_count; i++) {
         const pmesh_scene_bytes r = pmesh_scene_resource(scene, i);
+        if (style.stream && image[i]) {
+            resource_start.push_back(style.resource_offsets[i]);
+            in_stream.push_back(true);
+            continue;
+        }
+        in_stream.push_back(false);
         align(8);
         resource_start.push_back(bin.size());
         if (!missing[i])
@@ -306,22 +337,25 @@ void writer::resources()
 }
 
 /* Before the geometry's views are added: all that there are name resources. */
-void writer::move_views()
+void scene_writer::move_views()
 {
     for (gltf_document &view : doc["bufferViews"]) {
         if (!view.is_object())
             throw std::runtime_error("a view is no object");
         if (!view.contains("buffer"))
             continue;
-        const size_t start =
-            resource_start.at(view["buffer"].get<size_t>());
+        const auto number = view["buffer"].get<size_t>();
+        const size_t start = resource_start.at(number);
+        if (in_stream[number])
+            image_views.push_back(
+                static_cast<size_t>(&view - &doc["bufferViews"][0]));
         view["buffer"] = 0;
         view["byteOffset"] = start + view.value("byteOffset", size_t{ 0 });
     }
 }
 
 /* What is left of our marks: places that nothing took. */
-void writer::drop_marks()
+void scene_writer::drop_marks()
 {
     for (const size_t at : free_accessors)
         doc["accessors"][at] = { { "componentType", 5126 },
@@ -332,9 +366,38 @@ void writer::drop_marks()
     gltf_erase_extension(doc, GLTF_PROGRESSIVE);
 }
 
+void scene_writer::use_extension(const char *name, bool required)
+{
+    for (const char *list : { "extensionsUsed", "extensionsRequired" }) {
+        bool there = !required && list[10] == 'R';
+        for (const gltf_document &one : doc.value(list, gltf_document::array()))
+            there = there || one == name;
+        if (!there)
+            doc[list].push_back(name);
+    }
+}
+
+/* The last of all bytes, so that a reader can go on with it. */
+void scene_writer::add_stream()
+{
+    align(4);
+    for (const size_t at : image_views) {
+        gltf_document &view = doc["bufferViews"][at];
+        view["byteOffset"] = bin.size() + view["byteOffset"].get<size_t>();
+    }
+    doc["extensions"][GLTF_PROGRESSIVE] = { { "bufferView",
+                                              doc["bufferViews"].size() } };
+    use_extension(GLTF_PROGRESSIVE, false);
+    doc["bufferViews"].push_back({ { "buffer", 0 },
+                                   { "byteOffset", bin.size() },
+                                   { "byteLength", style.stream->size } });
+    bin.insert(bin.end(), style.stream->data,
+               style.stream->data + style.stream->size);
+}
+
 /* ---- the file ----------------------------------------------------------- */
 
-void put_u32(asset_bytes *out, size_t value)
+static void put_u32(asset_bytes *out, size_t value)
 {
     const uint8_t bytes[4] = { static_cast<uint8_t>(value),
                                static_cast<uint8_t>(value >> 8),
@@ -343,7 +406,7 @@ void put_u32(asset_bytes *out, size_t value)
     asset_put(out, bytes, sizeof bytes);
 }
 
-void writer::put_glb(const std::string &json, asset_bytes *out) const
+void scene_writer::put_glb(const std::string &json, asset_bytes *out) const
 {
     const size_t text = (json.size() + 3) / 4 * 4;
     const uint64_t total = uint64_t{ 12 + 8 + 8 } + text + bin.size();
@@ -362,7 +425,7 @@ void writer::put_glb(const std::string &json, asset_bytes *out) const
     asset_put(out, bin.data(), bin.size());
 }
 
-std::string base64(const gltf_bytes &in)
+static std::string base64(const gltf_bytes &in)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnop"
                                  "qrstuvwxyz0123456789+/";
@@ -377,18 +440,26 @@ std::string base64(const gltf_bytes &in)
     return out;
 }
 
-void writer::write(asset_bytes *out)
+void scene_writer::write(asset_bytes *out)
 {
     open();
     resources();
     move_views();
     primitives();
     drop_marks();
+    if (style.stream)
+        add_stream();
     align(4);
     doc["buffers"] = { { { "byteLength", bin.size() } } };
     if (!style.glb)
         doc["buffers"][0]["uri"] =
             "data:application/octet-stream;base64," + base64(bin);
+    if (style.meshopt) {
+        doc["buffers"].push_back(
+            { { "byteLength", unpacked },
+              { "extensions", { { GLTF_MESHOPT, { { "fallback", true } } } } } });
+        use_extension(GLTF_MESHOPT, true);
+    }
     if (style.glb) {
         put_glb(doc.dump(), out);
     } else {
@@ -399,13 +470,59 @@ void writer::write(asset_bytes *out)
         throw std::bad_alloc();
 }
 
-} // namespace
+static uint32_t get_u32(const uint8_t *p)
+{
+    return p[0] | static_cast<uint32_t>(p[1]) << 8 |
+           static_cast<uint32_t>(p[2]) << 16 |
+           static_cast<uint32_t>(p[3]) << 24;
+}
+
+/* The stream's view, out of the text of a GLB. Throws what the parser does. */
+static bool find_view(const uint8_t *json, size_t json_size, size_t *offset,
+                      size_t *size)
+{
+    const gltf_json doc = gltf_json::parse(json, json + json_size);
+    const gltf_json &view = doc.at("bufferViews")
+                                .at(doc.at("extensions")
+                                        .at(GLTF_PROGRESSIVE)
+                                        .at("bufferView")
+                                        .get<size_t>());
+    *offset = view.value("byteOffset", size_t{ 0 });
+    *size = view.at("byteLength").get<size_t>();
+    return view.at("buffer") == 0;
+}
+
+bool scene_find_stream(const uint8_t *data, size_t data_size, size_t *offset,
+                       size_t *size)
+{
+    if (data_size < 20 || memcmp(data, "glTF", 4) != 0)
+        return false;
+    const size_t text = get_u32(data + 12), left = data_size - 20;
+    gltf_source source = {};
+    asset unused = {};
+    asset_error error;
+
+    if (get_u32(data + 4) != 2 || text > left ||
+        !gltf_open(data + 20, text, &source, &unused, &error))
+        return false;
+    try {
+        if (left - text < 8 || !find_view(data + 20, text, offset, size) ||
+            *offset > left - text - 8)
+            return false;
+    } catch (...) {
+        return false; /* a GLB of another kind */
+    }
+    const size_t most = left - text - 8 - *offset;
+    *size = *size < most ? *size : most;
+    *offset += 20 + text + 8;
+    return true;
+}
 
 bool scene_write(pmesh_scene *scene, scene_style style, asset_bytes *out,
                  asset *notes, asset_error *error)
 {
     try {
-        writer(scene, style, notes).write(out);
+        scene_writer(scene, style, notes).write(out);
         return true;
     } catch (const std::bad_alloc &) {
         return asset_fail(error, "", "out of memory");
