@@ -165,14 +165,33 @@ static uint8_t bits_of(const pmesh_attribute_input *in,
     return config->generic_bits;
 }
 
+static float weight_of(const pmesh_attribute_input *in,
+                       const pmesh_encoder_config *config)
+{
+    if (in->weight != 0)
+        return in->weight > 0 ? in->weight : 0;
+    switch (in->kind) {
+    case PMESH_NORMAL:
+        return (float)config->normal_weight;
+    case PMESH_TEXCOORD:
+        return (float)config->texcoord_weight;
+    case PMESH_COLOR:
+        return (float)config->color_weight;
+    case PMESH_GENERIC:
+        break;
+    }
+    return (float)config->generic_weight;
+}
+
 static pmesh_status open_channel(wedger *w, channel *c,
                                  const pmesh_encoder_config *config,
                                  uint32_t *repaired)
 {
     const pmesh_allocator *a = &w->mesh->allocator;
     pmesh_attribute *attribute =
-        &w->mesh->attribute[w->mesh->attribute_count++];
+        &w->mesh->attribute[w->mesh->attribute_count];
 
+    w->mesh->weight[w->mesh->attribute_count++] = weight_of(c->in, config);
     *attribute = (pmesh_attribute){
         .kind = c->in->kind, .set = c->in->set,
         .components = c->in->components, .bits = bits_of(c->in, config)

@@ -89,7 +89,7 @@ static enc_pair pair_of(const enc_run *run, uint32_t h, bool back)
     return pair;
 }
 
-/* Its estimated quadric goes to *quadric. */
+/* Its estimated quadric goes to *quadric; the largest key: forbidden. */
 static enc_entry make_entry(const enc_run *run, uint32_t h, bool back,
                             double *quadric)
 {
@@ -99,6 +99,8 @@ static enc_entry make_entry(const enc_run *run, uint32_t h, bool back,
     const enc_offer offer = enc_pricing_estimate(&run->pricing, s, &pair);
 
     *quadric = offer.quadric;
+    if (!(offer.cost < INFINITY))
+        return (enc_entry){ UINT32_MAX, entry_id(h, back) };
     return (enc_entry){ last | enc_key(offer.cost), entry_id(h, back) };
 }
 
@@ -135,11 +137,57 @@ static uint8_t examine_general(const enc_surface *s, uint32_t u, uint32_t v)
         ((!v_outer || u_outer) && !link.held[1] ? MAY_BACK : 0));
 }
 
+/* Without it its segment would have less than its share of what is left. */
+static bool has_to_stay(const enc_run *run, uint32_t v)
+{
+    const enc_guide *guide = run->mesh->guide;
+    if (!run->segment_size)
+        return false;
+    return run->segment_size[guide->segment[v]] - 1 <
+           guide->share[guide->segment[v]] * (run->surface.vertex_count - 1);
+}
+
+/* The subset placement has two places to choose from: the direction that leads
+ * away from the constraints, if one does. */
+static unsigned steer(const enc_run *run, const enc_pair *forth)
+{
+    double pull[2];
+
+    enc_pricing_ends(&run->pricing, &run->surface, forth, pull);
+    return pull[0] > pull[1] + ENC_CONTENT   ? MAY_FORTH
+           : pull[1] > pull[0] + ENC_CONTENT ? MAY_BACK
+                                             : 0;
+}
+
+/* What the guide leaves of the directions of a pair. */
+static uint8_t guided_state(const enc_run *run, uint32_t h, uint8_t state)
+{
+    const enc_guide *guide = run->mesh->guide;
+
+    if (!guide->lock && !guide->segment && !guide->pull)
+        return state;
+    run->edge_state[h] = state; /* of which pair_of() takes the kind */
+    const enc_pair pair = pair_of(run, h, false);
+    const unsigned allowed =
+        enc_guide_directions(guide, pair.child, pair.parent);
+    unsigned lost = (allowed & ENC_GUIDE_FORTH ? 0 : MAY_FORTH) |
+                    (allowed & ENC_GUIDE_BACK ? 0 : MAY_BACK);
+    if (has_to_stay(run, pair.child)) /* and the parent is of its segment */
+        lost |= MAY_FORTH | MAY_BACK;
+    if (run->pricing.pull && run->pricing.placement == PMESH_SUBSET &&
+        (run->pricing.pulled[pair.child] || run->pricing.pulled[pair.parent]) &&
+        (state & ~lost & (MAY_FORTH | MAY_BACK)) == (MAY_FORTH | MAY_BACK))
+        lost |= steer(run, &pair);
+    return (uint8_t)(state & ~lost);
+}
+
 static void queue_pair(enc_run *run, uint32_t h, uint8_t state)
 {
     enc_entry best = { UINT32_MAX, 0 };
     double best_quadric = 0;
 
+    if (run->mesh->guide && state)
+        state = guided_state(run, h, state);
     run->edge_state[h] = state;
     for (int back = 0; back < 2; back++) {
         if (!may(state, back != 0))
@@ -366,6 +414,8 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
     for (uint32_t i = 0; link && i < link->count; i++)
         end_face(out, link->edge[i], index);
     run->drift[pair->parent] = (float)error;
+    if (run->segment_size)
+        run->segment_size[run->mesh->guide->segment[pair->child]]--;
     run->taken[pair->child] = run->taken[pair->parent] =
         (uint8_t)(out->batch_count + 1);
     if (run->role)
@@ -395,10 +445,26 @@ static double total_error(const enc_run *run, const enc_pair *pair,
     return offer->distance + (child > parent ? child : parent);
 }
 
+static void queue_again(enc_run *run, uint32_t h, bool back)
+{
+    double quadric;
+    const enc_entry entry = make_entry(run, h, back, &quadric);
+    if (entry.key < UINT32_MAX)
+        enc_queue_push(&run->queue, entry);
+}
+
+static bool is_too_far(enc_run *run, double error)
+{
+    const bool far = error > run->error_limit;
+    run->too_far |= far;
+    return far;
+}
+
 /* What it costs now, and whether it may go at that: not if that has grown (then
  * it goes back into the queue) or a face would flip or double (then perhaps the
- * other way, or at the very end). `link`: of a general pair. */
-static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
+ * other way, or at the very end). `link`: of a general pair. The pair is
+ * expected. */
+static bool is_expected_acceptable(enc_run *run, const enc_batch_plan *plan,
                           enc_entry entry, const enc_pair *pair,
                           const enc_link *link, enc_offer *offer)
 {
@@ -407,7 +473,7 @@ static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
     const bool back = entry.id & 1;
 
     *offer = enc_pricing_offer(&run->pricing, s, pair);
-    if (offer->quadric > run->guard)
+    if (offer->quadric > run->guard || !(offer->cost < INFINITY))
         return false;
     if (!plan->coherent &&
         offer->cost > STALE_FACTOR * enc_key_cost(entry.key)) {
@@ -418,12 +484,13 @@ static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
         }
     }
     const bool doubles = link && link->doubles;
-    if (!doubles && !enc_surface_flips(s, pair, offer->place))
+    const bool turns = !run->lets_turn && !doubles &&
+                       enc_looks_turn(&run->pricing.looks, s, pair);
+    if (!doubles && !turns && !enc_surface_flips(s, pair, offer->place))
         return true;
     if (may(run->edge_state[h], !back) && !(run->edge_state[h] & TURNED)) {
         run->edge_state[h] |= TURNED;
-        double quadric;
-        enc_queue_push(&run->queue, make_entry(run, h, !back, &quadric));
+        queue_again(run, h, !back);
     } else if (run->joins_sheets && link) {
         if (run->edge_state[h] & LATE)
             return true;
@@ -432,6 +499,18 @@ static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
                                                  entry.id });
     }
     return false;
+}
+
+static bool is_acceptable(enc_run *run, const enc_batch_plan *plan,
+                          enc_entry entry, const enc_pair *pair,
+                          const enc_link *link, enc_offer *offer)
+{
+    const enc_looks *looks = &run->pricing.looks;
+    enc_looks_expect(looks, &run->surface, pair);
+    const bool good =
+        is_expected_acceptable(run, plan, entry, pair, link, offer);
+    enc_looks_forget(looks, &run->surface, pair);
+    return good;
 }
 
 static bool try_general(enc_run *run, const enc_batch_plan *plan,
@@ -449,7 +528,7 @@ static bool try_general(enc_run *run, const enc_batch_plan *plan,
     if (!is_acceptable(run, plan, entry, pair, &link, &offer))
         return false;
     const double error = total_error(run, pair, &offer);
-    if (error > run->error_limit)
+    if (is_too_far(run, error))
         return false;
     contract(run, pair, &link, &offer, error);
     return true;
@@ -465,7 +544,8 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
     if (h < 3 * run->mesh->face_count && s->vertex[h] == ENC_NONE)
         return false;
     const enc_pair pair = pair_of(run, h, back);
-    if (!is_free(run, pair.child) || !is_free(run, pair.parent))
+    if (!is_free(run, pair.child) || !is_free(run, pair.parent) ||
+        has_to_stay(run, pair.child))
         return false;
     if (general)
         return try_general(run, plan, entry, &pair);
@@ -477,7 +557,7 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
     if (!is_acceptable(run, plan, entry, &pair, NULL, &offer))
         return false;
     const double error = total_error(run, &pair, &offer);
-    if (error > run->error_limit)
+    if (is_too_far(run, error))
         return false;
 
     enc_entry parallel[4];
@@ -494,6 +574,7 @@ uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
     uint32_t accepted = 0;
     enc_entry entry;
 
+    run->too_far = false;
     enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
                       run->out->contraction_count == 0);
     collect(run, plan);

@@ -60,11 +60,16 @@ typedef struct enc_run {
     uint32_t within;
     bool joins_sheets;   /* edges alone do not lead much further: closest
                             vertices of small sheets are pairs, too */
+    bool lets_turn;      /* texture coordinates may turn over: nothing else is
+                            left */
     uint8_t *taken;      /* per vertex: batch_count when last in a pair, + 1 */
     enc_role *role;      /* per vertex; NULL unless joined */
     float *drift;        /* per vertex: squared distance from the original */
     uint32_t face_target, vertex_target;
+    uint32_t *segment_size; /* per segment of the guide: its vertices; NULL
+                               unless segments have shares */
     double error_limit;    /* squared, in steps */
+    bool too_far;          /* the batch left out a pair because of it */
     double parallel_limit; /* cost up to which parallel pairs are preferred */
     uint32_t tick;         /* candidates seen, for progress */
     bool cancelled;

@@ -8,11 +8,19 @@
  *     quadric * Q(place) + length * e^2 |child - parent|^2
  *                        + uneven * e^2 |child - mean of its ring|^2
  *
- * with e the mean edge of the mesh at the start of the batch.
+ * with e the mean edge of the mesh at the start of the batch. With another
+ * pmesh_cost than PMESH_COST_QUADRIC they are what that says. Attributes with
+ * weight are part of Q; see enc_looks.h.
+ * Of a guided mesh quadrics are times their factors and the rest is times the
+ * mean factor of the pair; constraints move the place, whatever it costs, but
+ * only if the best one is not good enough for them.
  */
 #ifndef ENC_CANDIDATE_H
 #define ENC_CANDIDATE_H
 
+#include "encoder/enc_cost.h"
+#include "encoder/enc_guide.h"
+#include "encoder/enc_looks.h"
 #include "encoder/enc_star.h"
 
 /* Weights of the three terms. */
@@ -30,17 +38,27 @@ typedef struct enc_pricing {
     pmesh_metric metric;
     pmesh_placement placement;
     enc_taste taste;
+    enc_cost_rule rule;
+    enc_looks looks;
     double edge_square; /* e^2 */
     enc_planes *planes; /* per vertex: its quadric, about its position ... */
     enc_moved *moved;   /* ... NULL with PMESH_MEMORYLESS */
     float *unevenness;  /* per vertex: |v - mean of its ring|^2 */
+    float *factor;      /* per vertex, as in enc_guide; or NULL */
+    enc_quadric *pull;  /* likewise, about its position */
+    uint8_t *pulled;    /* whether there is any */
+    const uint8_t *lock;
 } enc_pricing;
+
+/* Mean squared distances from constraints up to this are as good as none: a
+ * quarter of a step. */
+#define ENC_CONTENT (1.0 / 16)
 
 typedef struct enc_offer {
     int32_t place[3]; /* where the parent will be */
-    double cost;
+    double cost;     /* infinite: forbidden */
     double quadric;  /* the part of it that is Q(place) */
-    double distance; /* squared, in steps: the quadric's mean at the place */
+    double distance; /* squared, in steps: the mean of Q without attributes */
 } enc_offer;
 
 pmesh_status enc_pricing_create(const enc_mesh *mesh,
@@ -54,13 +72,20 @@ void enc_pricing_begin(enc_pricing *pricing, const enc_surface *s,
                        enc_taste taste, bool first_time);
 
 /* From the quadrics at the start of the batch; cheap. With PMESH_OPTIMAL the
- * place is not on the grid yet. Only cost and quadric are filled in. */
+ * place is not on the grid yet. Only cost and quadric are filled in. No pair
+ * with the same child may be expected by the looks. */
 enc_offer enc_pricing_estimate(const enc_pricing *pricing, const enc_surface *s,
                                const enc_pair *pair);
 
-/* From the surface as it is now; the final word. */
+/* From the surface as it is now; the final word. The pair must be expected by
+ * the looks. */
 enc_offer enc_pricing_offer(const enc_pricing *pricing, const enc_surface *s,
                             const enc_pair *pair);
+
+/* Mean squared distance, in steps, from what the constraints of both ends ask
+ * for: at the parent's place, and at the child's. */
+void enc_pricing_ends(const enc_pricing *pricing, const enc_surface *s,
+                      const enc_pair *pair, double pull[2]);
 
 /* To be told of each contraction before it happens. */
 void enc_pricing_contract(enc_pricing *pricing, const enc_surface *s,

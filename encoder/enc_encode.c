@@ -13,6 +13,8 @@
 #include "encoder/enc_stream.h"
 #include "format/alloc.h"
 
+#define MAX_WEIGHT 1e6
+
 enum {
     BLOCK_ROOM = 1 << 22,  /* far beyond what a block of 64 KiB can need */
     BASE_FACE_ROOM = 96,   /* bytes: a face is a few flags and, at most, one */
@@ -34,6 +36,9 @@ pmesh_encoder_config pmesh_encoder_config_default(void)
         .texcoord_bits = 12,
         .color_bits = 8,
         .generic_bits = 12,
+        .normal_weight = 0.01,
+        .texcoord_weight = 0.1,
+        .color_weight = 0.03,
     };
 }
 
@@ -46,6 +51,16 @@ static bool within(unsigned value, unsigned least, unsigned most)
 static bool is_amount(double value)
 {
     return value - value == 0 && value >= 0;
+}
+
+static bool is_weight(double value)
+{
+    return value >= 0 && value <= MAX_WEIGHT;
+}
+
+static bool is_finite(const double x[3])
+{
+    return x[0] - x[0] == 0 && x[1] - x[1] == 0 && x[2] - x[2] == 0;
 }
 
 static bool config_is_sound(const pmesh_encoder_config *c)
@@ -61,7 +76,12 @@ static bool config_is_sound(const pmesh_encoder_config *c)
            within(c->texcoord_bits, 4, 16) && within(c->color_bits, 4, 16) &&
            within(c->generic_bits, 4, 16) && is_amount(c->weld) &&
            is_amount(c->threshold) && is_amount(c->base_ratio) &&
-           is_amount(c->base_error) &&
+           is_amount(c->base_error) && is_weight(c->normal_weight) &&
+           is_weight(c->texcoord_weight) && is_weight(c->color_weight) &&
+           is_weight(c->generic_weight) &&
+           within(c->cost, PMESH_COST_QUADRIC, PMESH_COST_CUSTOM) &&
+           (c->cost != PMESH_COST_CUSTOM || c->cost_hook) &&
+           is_finite(c->camera) &&
            !c->allocator.alloc == !c->allocator.release;
 }
 
@@ -295,6 +315,7 @@ static void fill_report(job *j, uint64_t header_size, uint64_t file_size)
     r->base_coder = h->base_coder;
     r->base_faces = h->levels[0].faces;
     r->base_vertices = h->levels[0].vertices;
+    r->end = j->schedule.end;
     r->level_count = h->level_count;
     for (uint32_t i = 0; i < h->level_count; i++)
         r->levels[i] = (pmesh_level){ .bytes = header_size + h->levels[i].bytes,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "encoder/enc_import.h"
 
+#include "encoder/enc_guide.h"
 #include "format/alloc.h"
 #include "format/quantize.h"
 
@@ -47,6 +48,7 @@ static bool attribute_is_legal(const pmesh_attribute_input *attribute,
         return false;
     }
     return (attribute->bits == 0 || bits_are_legal(attribute->bits)) &&
+           attribute->weight - attribute->weight == 0 &&
            (attribute->values || attribute->count == 0) &&
            (attribute->stride == 0 ||
             attribute->stride >= n * sizeof(float)) &&
@@ -271,6 +273,8 @@ static void load_positions(enc_importer *im)
             if (mesh->exact)
                 mesh->exact[vertex][k] = (float)p[k];
         }
+        if (mesh->source)
+            mesh->source[vertex] = v;
         vertex++;
     }
 }
@@ -303,6 +307,9 @@ static pmesh_status load_mesh(enc_importer *im)
     if (im->config->lossless)
         mesh->exact =
             pmesh_alloc(a, mesh->vertex_count, sizeof *mesh->exact);
+    if (im->config->cost == PMESH_COST_CUSTOM)
+        mesh->source =
+            pmesh_alloc(a, mesh->vertex_count, sizeof *mesh->source);
     im->source_count = mesh->face_count;
     im->source = pmesh_alloc(a, im->source_count, sizeof *im->source);
     if (mesh->material_count > 1)
@@ -310,6 +317,7 @@ static pmesh_status load_mesh(enc_importer *im)
             pmesh_alloc_zero(a, mesh->face_count, sizeof *mesh->material);
     if (!mesh->vertex || !mesh->position || !im->source ||
         (im->config->lossless && !mesh->exact) ||
+        (im->config->cost == PMESH_COST_CUSTOM && !mesh->source) ||
         (mesh->material_count > 1 && !mesh->material))
         return PMESH_E_MEMORY;
     number_vertices(im);
@@ -354,10 +362,13 @@ static pmesh_status run_import(enc_importer *im)
     status = load_mesh(im);
     if (!status)
         status = enc_make_manifold(im);
-    release_numbers(im);
     if (!status)
         status = enc_wedges(im->mesh, im->in, im->config, im->source,
                             &im->report->not_finite_values);
+    if (!status)
+        status = enc_guide_create(im->mesh, im->in, im->config->guide,
+                                  im->number, im->source);
+    release_numbers(im);
     pmesh_release(&im->mesh->allocator, im->source, im->source_count,
                   sizeof *im->source);
     return status;

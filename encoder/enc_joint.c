@@ -28,9 +28,9 @@ static double dot_n(const double *a, const double *b, unsigned n)
     return sum;
 }
 
-/* Orthonormal (e, f) along the plane; false if it has no two directions. */
-static bool frame(unsigned m, const double p[3], const double *s,
-                  const double q[3], const double *t, double e[], double f[])
+bool enc_joint_frame(unsigned m, const double p[3], const double *s,
+                     const double q[3], const double *t, double e[],
+                     double f[])
 {
     const unsigned n = 3 + m;
 
@@ -71,7 +71,7 @@ void enc_joint_add_face(enc_quadric *sum, double *tail, unsigned m,
         enc_quadric_add_plane(sum, normal, area);
         return;
     }
-    if (!frame(m, p, s, q, t, e, f))
+    if (!enc_joint_frame(m, p, s, q, t, e, f))
         return;
     double *d = tail + 3 * m;
     for (unsigned i = 0, k = 0; i < 3; i++)

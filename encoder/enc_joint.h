@@ -36,6 +36,13 @@ static inline size_t enc_joint_tail(unsigned m)
 #define ENC_JOINT_TAIL_MAX (ENC_JOINT_MAX * 4 + \
                             ENC_JOINT_MAX * (ENC_JOINT_MAX + 1) / 2)
 
+/* Orthonormal e and f, of 3 + m each, along the plane of a triangle whose other
+ * two corners are seen from the first at (p, s) and (q, t); false if it has no
+ * two directions. */
+bool enc_joint_frame(unsigned m, const double p[3], const double *s,
+                     const double q[3], const double *t, double e[],
+                     double f[]);
+
 /* Adds the plane of a triangle through the centre, whose other two corners are
  * seen from there at (p, s) and (q, t). Without area it is nothing. */
 void enc_joint_add_face(enc_quadric *sum, double *tail, unsigned m,

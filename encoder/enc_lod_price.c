@@ -8,13 +8,6 @@
 #include "encoder/enc_lod_place.h"
 #include "format/alloc.h"
 
-/* Decides between contractions that cost nothing: short edges first. Far above
- * the rounding of sums, far below what can be seen. */
-#define LENGTH_TIE 1e-12
-
-/* The factor f of the camera cost. */
-#define CAMERA_FACTOR 0.01
-
 pmesh_status enc_lod_pricer_create(enc_lod *lod,
                                    const pmesh_simplify_options *options,
                                    const enc_lod_frame *frame,
@@ -23,8 +16,15 @@ pmesh_status enc_lod_pricer_create(enc_lod *lod,
                                    double *value, enc_lod_pricer *out)
 {
     *out = (enc_lod_pricer){
-        .lod = lod, .options = options, .frame = *frame, .placement = placement
+        .lod = lod,
+        .placement = placement,
+        .rule = { .cost = options->cost,
+                  .hook = options->hook,
+                  .user = options->user,
+                  .unit = frame->extent },
     };
+    memcpy(out->rule.camera, options->camera, sizeof options->camera);
+    memcpy(out->rule.origin, frame->origin, sizeof frame->origin);
     /* Areas are to weigh as much as their roots on the whole. */
     if (options->metric == PMESH_MEMORYLESS)
         out->recall = options->memory / sqrt(lod->faces);
@@ -81,7 +81,7 @@ static void remember_rim(enc_lod_pricer *p, uint32_t v, uint32_t far,
     const enc_lod *lod = p->lod;
     double along[3];
 
-    if (lod->mark[far].faces != 1 || !(p->options->boundary > 0))
+    if (lod->mark[far].faces != 1 || !(p->wedges.boundary > 0))
         return;
     difference(lod->position[far], lod->position[v], along);
     const double upright[3] = { along[1] * n[2] - along[2] * n[1],
@@ -147,41 +147,6 @@ static void carry_memory(enc_lod_pricer *p, const enc_lod_offer *offer)
 
 /* ---- costs --------------------------------------------------------------- */
 
-static void to_model(const enc_lod_pricer *p, const double x[3], double out[3])
-{
-    for (int i = 0; i < 3; i++)
-        out[i] = p->frame.origin[i] + p->frame.extent * x[i];
-}
-
-static double camera_distance(const enc_lod_pricer *p, const double x[3])
-{
-    double at[3], d[3];
-
-    to_model(p, x, at);
-    difference(at, p->options->camera, d);
-    const double far = sqrt(dot(d, d)), least = 1e-6 * p->frame.extent;
-    return far > least ? far : least;
-}
-
-static double ask_hook(const enc_lod_pricer *p, const enc_lod_edge *e,
-                       const double at[3], double value, double distance)
-{
-    const double extent = p->frame.extent, square = extent * extent;
-    double ends[2][3];
-    pmesh_simplify_pair pair = {
-        .vertices = { e->kept, e->gone },
-        .positions = { ends[0], ends[1] },
-        .quadric = value * square * square,
-        .distance = sqrt(distance) * extent,
-    };
-
-    to_model(p, p->lod->position[e->kept], ends[0]);
-    to_model(p, p->lod->position[e->gone], ends[1]);
-    to_model(p, at, pair.place);
-    const double cost = p->options->hook(p->options->user, &pair);
-    return cost >= 0 ? cost : INFINITY;
-}
-
 /* By area times squared distance alone, small features go too early: area
  * counts to the power of 3/4. A smaller power lowers the largest distance
  * further, and raises the mean. */
@@ -195,29 +160,22 @@ static double cost_of(const enc_lod_pricer *p, const enc_lod_edge *e,
                       const double x[3], double value, double weight,
                       double distance)
 {
-    const double square = dot(e->half, e->half), half = sqrt(square);
-    const double tie = LENGTH_TIE * 16 * square * square;
-    const double at[3] = { e->middle[0] + x[0], e->middle[1] + x[1],
-                           e->middle[2] + x[2] };
+    enc_cost_pair pair = {
+        .kept = e->kept,
+        .gone = e->gone,
+        .ends = { p->lod->position[e->kept], p->lod->position[e->gone] },
+        .quadric = value,
+        .distance = distance,
+    };
 
-    if (!(value < INFINITY))
-        return INFINITY;
-    switch (p->options->cost) {
-    case PMESH_COST_LENGTH:
-        return half * p->frame.extent;
-    case PMESH_COST_CAMERA:
-        return half * p->frame.extent /
-               (CAMERA_FACTOR * camera_distance(p, e->middle));
-    case PMESH_COST_QUADRIC_CAMERA: {
-        const double far = camera_distance(p, at) / p->frame.extent;
-        return (value + tie) / (far * far * far * far);
+    if (p->rule.cost == PMESH_COST_QUADRIC)
+        pair.quadric = balance(value, weight);
+    for (int i = 0; i < 3; i++) {
+        pair.middle[i] = e->middle[i];
+        pair.half[i] = e->half[i];
+        pair.place[i] = e->middle[i] + x[i];
     }
-    case PMESH_COST_CUSTOM:
-        return ask_hook(p, e, at, value, distance);
-    case PMESH_COST_QUADRIC:
-        break;
-    }
-    return balance(value, weight) + tie;
+    return enc_cost(&p->rule, &pair);
 }
 
 /* n'x of both ends' faces, each once, is the volume that they gain. */

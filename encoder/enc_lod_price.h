@@ -6,6 +6,7 @@
 #ifndef ENC_LOD_PRICE_H
 #define ENC_LOD_PRICE_H
 
+#include "encoder/enc_cost.h"
 #include "encoder/enc_lod_wedges.h"
 #include "encoder/pmesh_simplify.h"
 
@@ -18,9 +19,8 @@ typedef struct enc_lod_frame {
 
 typedef struct enc_lod_pricer {
     enc_lod *lod;
-    const pmesh_simplify_options *options;
-    enc_lod_frame frame;
     pmesh_place placement;
+    enc_cost_rule rule;
     enc_lod_wedges wedges;
     /* Per vertex: planes of the original's faces, summed. Beside the quadrics
      * of the current surface, `recall` times as heavy, they keep thin limbs

@@ -129,6 +129,7 @@ static pmesh_status copy_positions(enc_importer *im, uint32_t old_count)
 {
     enc_mesh *mesh = im->mesh;
     const bool lossless = mesh->exact != NULL;
+    const bool asked = mesh->source != NULL;
 
     if (mesh->vertex_count == old_count)
         return PMESH_OK;
@@ -137,8 +138,13 @@ static pmesh_status copy_positions(enc_importer *im, uint32_t old_count)
     if (lossless)
         mesh->exact =
             copy_items(im, old_count, mesh->exact, sizeof *mesh->exact);
-    return mesh->position && (mesh->exact || !lossless) ? PMESH_OK
-                                                        : PMESH_E_MEMORY;
+    if (asked)
+        mesh->source =
+            copy_items(im, old_count, mesh->source, sizeof *mesh->source);
+    return mesh->position && (mesh->exact || !lossless) &&
+                   (mesh->source || !asked)
+               ? PMESH_OK
+               : PMESH_E_MEMORY;
 }
 
 /* Without joining, each piece keeps a face and three vertices. */

@@ -31,6 +31,8 @@
 
 #define ENC_NONE UINT32_MAX
 
+typedef struct enc_guide enc_guide;
+
 typedef struct enc_mesh {
     pmesh_allocator allocator;
     pmesh_grid grid;
@@ -39,6 +41,8 @@ typedef struct enc_mesh {
     uint32_t vertex_count;
     int32_t (*position)[3]; /* grid coordinates */
     float (*exact)[3];      /* positions of the input; NULL unless lossless */
+    uint32_t *source;       /* an input vertex of each; NULL unless a cost hook
+                               is to be told */
 
     uint32_t face_count;
     uint32_t *vertex;   /* per corner */
@@ -56,6 +60,9 @@ typedef struct enc_mesh {
     uint32_t value_count;   /* sum of pmesh_coded_components() */
     uint32_t attribute_count;
     pmesh_attribute attribute[PMESH_MAX_ATTRIBUTES];
+    float weight[PMESH_MAX_ATTRIBUTES]; /* in costs; see enc_looks.h */
+
+    enc_guide *guide; /* enc_guide.h; NULL: nobody asked for anything */
 } enc_mesh;
 
 /*

@@ -56,6 +56,12 @@ enum { FINE_BATCHES = 2 };
 /* Levels that start below this share of the vertices are coarse. */
 #define COARSE_VERTICES 0.2
 
+/* Where vertices have weights, no batch goes beyond the share of the pairs that
+ * is not heavy, but to this one in any case: heavy pairs would have to be taken
+ * for want of others. Heavy is so many times the lightest. */
+#define LEAST_GUARD 0.5
+#define HEAVY 2.0f
+
 /* The run ends if this many batches in a row take less than a fiftieth. */
 enum { MAX_POOR_BATCHES = 3, POOR_SHARE = 50 };
 
@@ -140,6 +146,22 @@ static pmesh_status find_near(const enc_mesh *mesh, enc_run *run)
     return status;
 }
 
+/* Counts the vertices of segments that have shares. */
+static bool count_segments(const enc_mesh *mesh, enc_run *run)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const enc_guide *g = mesh->guide;
+    if (!g || !g->share)
+        return true;
+    run->segment_size =
+        pmesh_alloc_zero(a, g->segment_count, sizeof *run->segment_size);
+    if (!run->segment_size)
+        return false;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        run->segment_size[g->segment[v]]++;
+    return true;
+}
+
 static pmesh_status run_create(const enc_mesh *mesh,
                                const pmesh_encoder_config *config,
                                enc_schedule *schedule, enc_run *run)
@@ -158,6 +180,8 @@ static pmesh_status run_create(const enc_mesh *mesh,
                                   &run->queue);
     if (status == PMESH_OK)
         status = find_near(mesh, run);
+    if (status == PMESH_OK && !count_segments(mesh, run))
+        status = PMESH_E_MEMORY;
     if (status != PMESH_OK)
         return status;
     run->edge_state = pmesh_alloc_zero(
@@ -187,6 +211,9 @@ static void run_destroy(const enc_mesh *mesh, enc_run *run)
     pmesh_release(a, run->taken, mesh->vertex_count, sizeof *run->taken);
     pmesh_release(a, run->role, mesh->vertex_count, sizeof *run->role);
     pmesh_release(a, run->drift, mesh->vertex_count, sizeof *run->drift);
+    if (mesh->guide)
+        pmesh_release(a, run->segment_size, mesh->guide->segment_count,
+                      sizeof *run->segment_size);
 }
 
 uint32_t enc_base_target(const pmesh_encoder_config *config, uint32_t faces)
@@ -222,6 +249,22 @@ static void set_targets(enc_run *run)
     run->error_limit = config->base_error > 0 ? steps * steps : INFINITY;
 }
 
+/* Of the vertices that are left, those that are not heavy. */
+static double light_share(const enc_run *run)
+{
+    const float *factor = run->pricing.factor;
+    const uint32_t *first = run->surface.first;
+    float least = INFINITY;
+    uint32_t light = 0;
+
+    for (uint32_t v = 0; v < run->mesh->vertex_count; v++)
+        if (first[v] != ENC_NONE && factor[v] < least)
+            least = factor[v];
+    for (uint32_t v = 0; v < run->mesh->vertex_count; v++)
+        light += first[v] != ENC_NONE && factor[v] < HEAVY * least;
+    return fmax(LEAST_GUARD, (double)light / run->surface.vertex_count);
+}
+
 static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
 {
     const uint32_t n = run->surface.vertex_count;
@@ -234,12 +277,28 @@ static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
                           : profile == PMESH_BALANCED && fine ? FINE
                           : coarse                            ? BEST
                                                               : QUALITY;
+    if (run->config->cost != PMESH_COST_QUADRIC)
+        plan = BEST; /* strictly in its order */
+    if (run->pricing.factor)
+        plan.guard = fmin(plan.guard, light_share(run));
     if (run->joins_sheets)
         plan.guard = 1; /* there is little else */
     plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)
         plan.limit = 1;
     return plan;
+}
+
+/* Allows what is not allowed as long as there is anything else; false if
+ * nothing is left to allow. */
+static bool relent(enc_run *run)
+{
+    bool *next = run->mesh->joined && !run->joins_sheets ? &run->joins_sheets
+                 : run->pricing.looks.guarded            ? &run->lets_turn
+                                                         : NULL;
+    if (!next || *next)
+        return false;
+    return *next = true;
 }
 
 static void run_batches(enc_run *run, uint32_t variant)
@@ -253,17 +312,25 @@ static void run_batches(enc_run *run, uint32_t variant)
         const uint32_t n = run->surface.vertex_count;
         const uint32_t taken = enc_batch_contract(run, &plan);
 
-        const bool dry = taken <= n / POOR_SHARE;
-        if (taken == 0 && (!run->mesh->joined || run->joins_sheets))
-            break;
         if (taken > 0)
             out->batch_first[++out->batch_count] = out->contraction_count;
         poor = taken < n / POOR_SHARE ? poor + 1 : 0;
-        if (dry && run->mesh->joined && !run->joins_sheets) {
-            run->joins_sheets = true;
+        if (taken > n / POOR_SHARE)
+            continue;
+        if (relent(run))
             poor = 0;
-        }
+        else if (taken == 0)
+            break;
     }
+}
+
+static pmesh_simplify_end reason(const enc_run *run)
+{
+    if (run->surface.face_count <= run->face_target)
+        return PMESH_END_FACES;
+    if (run->surface.vertex_count <= run->vertex_target)
+        return PMESH_END_VERTICES;
+    return run->too_far ? PMESH_END_ERROR : PMESH_END_EXHAUSTED;
 }
 
 /* The parent of each vertex goes into scratch that is free by now. */
@@ -298,6 +365,7 @@ pmesh_status enc_schedule_build(const enc_mesh *mesh,
     if (status == PMESH_OK) {
         set_targets(&run);
         run_batches(&run, variant);
+        out->end = reason(&run);
         out->position = run.surface.position;
         run.surface.position = NULL;
         if (run.cancelled || run.starved)

@@ -32,6 +32,7 @@ typedef struct enc_schedule {
     pmesh_allocator allocator;
     uint32_t vertex_count, face_count, wedge_count; /* of the enc_mesh */
 
+    pmesh_simplify_end end; /* why there are no more contractions */
     uint32_t batch_count;  /* at most PMESH_MAX_LEVELS - 1, none is empty */
     uint32_t *batch_first; /* batch_count + 1 entries into `contraction`: batch
                               0 is contracted first, so it is the finest */

@@ -24,7 +24,8 @@
 #ifndef PMESH_ENCODE_H
 #define PMESH_ENCODE_H
 
-#include "format/pmesh.h"
+#include "encoder/pmesh_guide.h"
+#include "encoder/pmesh_simplify.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -45,6 +46,8 @@ typedef struct pmesh_attribute_input {
     size_t count;
     size_t stride;
     const uint32_t *indices;
+    float weight; /* of a difference of 1 in the costs; 0: the config's default
+                     for the kind, negative: none */
 } pmesh_attribute_input;
 
 /*
@@ -109,8 +112,10 @@ typedef struct pmesh_encoder_config {
     double threshold;          /* vertices this close may be contracted though
                                   they have no edge, model units; 0: none */
     pmesh_topology topology;   /* default PMESH_TOPOLOGY_AUTO */
+    const pmesh_guide *guide;  /* NULL: every vertex counts the same */
     int lossless;              /* non-zero: a last layer with the input's
                                   positions, bit for bit, see below */
+    /* Stops, of which the first one that is reached counts. */
     uint32_t base_faces;       /* stop at this many faces; 0: about 200 */
     uint32_t base_vertices;    /* ... or this many vertices; 0: no such stop */
     double base_ratio;         /* ... or this share of the faces; 0: no stop */
@@ -123,6 +128,22 @@ typedef struct pmesh_encoder_config {
     pmesh_base_encode base_encoder;
     pmesh_base_decode base_decoder; /* the numbers it gives are the file's */
     void *base_user;                /* of both hooks */
+    /* How much attributes count in the costs: by how much of the model's
+     * largest extent a difference of 1 does, per component. 0: no say at all,
+     * as if there was no such attribute. No triangle of texture coordinates with
+     * weight turns over, or loses its area, from level to level as long as
+     * anything else can be contracted. */
+    double normal_weight;      /* default 0.01 */
+    double texcoord_weight;    /* default 0.1 */
+    double color_weight;       /* default 0.03 */
+    double generic_weight;     /* default 0 */
+    pmesh_cost cost;           /* default PMESH_COST_QUADRIC; with another,
+                                  contractions come strictly in its order, batch
+                                  by batch, whatever the profile */
+    double camera[3];          /* of the two camera costs, model units */
+    pmesh_cost_hook cost_hook; /* of PMESH_COST_CUSTOM; asked about directed
+                                  contractions: the pair's second vertex goes */
+    void *cost_user;           /* of the hook */
     uint32_t threads;          /* 0 or 1: this thread only */
     pmesh_progress progress;   /* NULL: none */
     void *progress_user;
@@ -159,6 +180,8 @@ typedef struct pmesh_encode_report {
     uint32_t faces, vertices, wedges; /* full detail of the file */
     pmesh_base_coder base_coder;  /* the one that was used */
     uint32_t base_faces, base_vertices;
+    pmesh_simplify_end end;       /* why the base mesh is no coarser; exhausted:
+                                     nothing was left to contract */
     uint32_t level_count;
     pmesh_level levels[PMESH_MAX_LEVELS];
     uint64_t bytes;               /* the file */
@@ -180,11 +203,11 @@ typedef int (*pmesh_write)(void *user, const void *data, size_t size);
  * report: NULL or filled as far as the call came; set report->clock (or zero
  * the struct) before the call.
  *
- * Returns PMESH_OK, E_ARGUMENT (config out of range), E_MEMORY, E_LIMIT (more
- * than 2^30 corners), E_CANCELLED, E_WRITE, E_NO_FACES, E_INDEX, E_NOT_FINITE
- * (every face has a position that is not finite), or E_CORRUPT (a bug of ours:
- * the file would not hold the mesh). On failure nothing has been written, except
- * with E_WRITE.
+ * Returns PMESH_OK, E_ARGUMENT (config or guide out of range), E_MEMORY,
+ * E_LIMIT (more than 2^30 corners), E_CANCELLED, E_WRITE, E_NO_FACES, E_INDEX,
+ * E_NOT_FINITE (every face has a position that is not finite), or E_CORRUPT (a
+ * bug of ours: the file would not hold the mesh). On failure nothing has been
+ * written, except with E_WRITE.
  */
 PMESH_API pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
                                     const pmesh_encoder_config *config,

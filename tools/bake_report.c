@@ -8,6 +8,10 @@
 #include "tools/json.h"
 #include "tools/levels.h"
 
+/* By pmesh_simplify_end. */
+static const char *const ends[] = { "faces", "vertices", "error",
+                                    "exhausted" };
+
 static void note_count(report_notes *notes, uint32_t count, const char *what)
 {
     if (count > 0)
@@ -106,6 +110,7 @@ static void json_counts(json *j, const pmesh_encode_report *e)
     json_text(j, "base_coder", levels_base_name(e->base_coder));
     json_count(j, "base_faces", e->base_faces);
     json_count(j, "base_vertices", e->base_vertices);
+    json_text(j, "end", ends[e->end]);
     json_count(j, "components", e->components);
     json_count(j, "base_components", e->base_components);
     json_bool(j, "joined", e->joined != 0);

@@ -43,6 +43,7 @@ static void add_counts(pmesh_encode_report *sum, const pmesh_encode_report *r)
     sum->seconds_import += r->seconds_import;
     sum->seconds_contract += r->seconds_contract;
     sum->seconds_code += r->seconds_code;
+    sum->end = r->end > sum->end ? r->end : sum->end;
     sum->grid = r->grid;
     sum->base_coder = r->base_coder;
 }

@@ -14,17 +14,23 @@
 #include "tools/cmd.h"
 #include "tools/draco_base.h"
 #include "tools/file.h"
+#include "tools/guide.h"
 #include "tools/load.h"
 #include "tools/progress.h"
 #include "tools/scene_parts.h"
+#include "tools/triple.h"
 
 typedef struct options {
-    const char *input, *output;
-    int profile, placement, metric, base, topology;
+    const char *input, *output, *camera;
+    int profile, placement, metric, cost, base, topology;
     int format; /* which of CMD_FORMATS; -1: not given */
     uint32_t position_bits, normal_bits, uv_bits, color_bits, generic_bits;
-    uint32_t base_faces, threads;
-    double weld, threshold, max_error;
+    uint32_t base_faces, base_vertices, threads;
+    const char *guide, *weights;
+    int contours; /* which of none, seams, borders, all */
+    double base_ratio, max_error, weld, threshold, crease;
+    double normal_weight, uv_weight, color_weight, generic_weight;
+    file_data guide_data;
     bool lossless, no_attributes, merge, json, quiet, verbose, progress;
 } options;
 
@@ -67,7 +73,13 @@ static const args_option option_table[] = {
       .help = "leave out normals, texture coordinates and colours" },
     { .name = "base-faces", .kind = ARGS_COUNT, .value = "N", .min = 1,
       .max = 1 << 28, AT(base_faces),
-      .help = "size of the coarsest level; default about 200" },
+      .help = "size of the coarsest level; default about 200. Of\n"
+              "it and the next three the first one counts" },
+    { .name = "base-vertices", .kind = ARGS_COUNT, .value = "N", .min = 1,
+      .max = 1 << 28, AT(base_vertices), .help = "the same in vertices" },
+    { .name = "base-ratio", .kind = ARGS_RATIO, .value = "R", .min = 0,
+      .max = 1, AT(base_ratio),
+      .help = "the same as a share of the faces: 1% or 0.01" },
     { .name = "base", .kind = ARGS_CHOICE, .value = "native|draco", AT(base),
       .help = "who codes it: native (default), or draco, often\n"
               "smaller from about 10000 base faces on" },
@@ -79,6 +91,39 @@ static const args_option option_table[] = {
       .value = "memoryless|accumulated", AT(metric),
       .help = "quadrics of the current surface (default) or\n"
               "summed from the original" },
+    { .name = "normal-weight", .kind = ARGS_NUMBER, .value = "W", .min = 0,
+      .max = 1e6, AT(normal_weight),
+      .help = "how much a difference of 1 counts against the\n"
+              "model's extent (default 0.01); 0: not at all" },
+    { .name = "uv-weight", .kind = ARGS_NUMBER, .value = "W", .min = 0,
+      .max = 1e6, AT(uv_weight),
+      .help = "the same of texture coordinates (default 0.1)" },
+    { .name = "color-weight", .kind = ARGS_NUMBER, .value = "W", .min = 0,
+      .max = 1e6, AT(color_weight), .help = "of colours (default 0.03)" },
+    { .name = "generic-weight", .kind = ARGS_NUMBER, .value = "W", .min = 0,
+      .max = 1e6, AT(generic_weight), .help = "and of others (default 0)" },
+    { .name = "cost", .kind = ARGS_CHOICE,
+      .value = "quadric|length|camera|quadric-camera", AT(cost),
+      .help = "what goes first: the least error (default), short\n"
+              "edges, short ones as a camera sees them, or error\n"
+              "as it sees it" },
+    { .name = "camera", .kind = ARGS_TEXT, .value = "X,Y,Z", AT(camera),
+      .help = "where it is (model units)" },
+    { .name = "guide", .kind = ARGS_TEXT, .value = "FILE", AT(guide),
+      .help = "what matters: weights, locks, contours, planes,\n"
+              "points and segments from a guide file" },
+    { .name = "weights", .kind = ARGS_TEXT, .value = "SOURCE", AT(weights),
+      .help = "where detail stays longest, 0 to 1 per vertex:\n"
+              "color:r, color:r-b, attr:NAME, texture:MASK.png;\n"
+              "default the attribute _LOD_WEIGHT, if any" },
+    { .name = "crease", .kind = ARGS_NUMBER, .value = "DEGREES", .min = 0,
+      .max = 180, AT(crease),
+      .help = "edges that bend more are contours: vertices stay\n"
+              "on them; default 0: none" },
+    { .name = "contours", .kind = ARGS_CHOICE,
+      .value = "none|seams|borders|all", AT(contours),
+      .help = "and so are seams of attributes, or borders of\n"
+              "materials; default none" },
     { .name = "weld", .kind = ARGS_NUMBER, .value = "EPS", .min = 0,
       .max = DBL_MAX, AT(weld),
       .help = "join positions this close (model units);\n"
@@ -158,6 +203,20 @@ static int check_options(const options *o, int operand_count)
     }
 }
 
+static int check_camera(const options *o)
+{
+    const bool seen = o->cost == PMESH_COST_CAMERA ||
+                      o->cost == PMESH_COST_QUADRIC_CAMERA;
+    double camera[3];
+
+    if (seen != (o->camera != NULL))
+        return usage(seen ? "this cost needs --camera"
+                          : "--camera is for a cost with camera");
+    if (seen && !triple_parse(o->camera, camera))
+        return usage("--camera takes three numbers: 3,0,25");
+    return CMD_DONE;
+}
+
 static void configure(const options *o, pmesh_encoder_config *config)
 {
     config->profile = (pmesh_profile)o->profile;
@@ -169,7 +228,17 @@ static void configure(const options *o, pmesh_encoder_config *config)
     config->color_bits = (uint8_t)o->color_bits;
     config->generic_bits = (uint8_t)o->generic_bits;
     config->base_faces = o->base_faces;
+    config->base_vertices = o->base_vertices;
+    /* 29 % of 100 faces are 29, though 0.29 * 100 is a little less. */
+    config->base_ratio = o->base_ratio * (1 + DBL_EPSILON);
     config->base_error = o->max_error;
+    config->normal_weight = o->normal_weight;
+    config->texcoord_weight = o->uv_weight;
+    config->color_weight = o->color_weight;
+    config->generic_weight = o->generic_weight;
+    config->cost = (pmesh_cost)o->cost;
+    if (o->camera)
+        triple_parse(o->camera, config->camera);
     config->base_coder = (pmesh_base_coder)o->base;
     config->base_encoder = draco_base_encode;
     config->base_decoder = draco_base_decode;
@@ -185,6 +254,46 @@ static int collect(void *user, const void *data, size_t size)
     asset_bytes *bytes = user;
     asset_put(bytes, data, size);
     return bytes->failed;
+}
+
+/* The guide of a mesh by file, weights and creases; an exit code. */
+static int guide_of(const options *o, const char *name, const asset *mesh,
+                    report_notes *notes, guide *out)
+{
+    enum { SEAMS = 1, BORDERS, ALL };
+    asset_error error;
+    bool ok;
+
+    if (!guide_create(out)) {
+        report_error(name, NULL, "out of memory");
+        return CMD_IO;
+    }
+    if (o->weights)
+        ok = guide_take_weights(out, mesh, o->weights, &error);
+    else
+        ok = guide_take_own_weights(out, mesh, &error);
+    if (!ok) {
+        report_asset_error(name, &error);
+        return CMD_ASSET;
+    }
+    if (o->guide && !guide_read(out, o->guide_data.bytes, o->guide_data.size,
+                                mesh, &error)) {
+        report_asset_error(file_input_name(o->guide), &error);
+        return CMD_ASSET;
+    }
+    if (out->warning[0])
+        report_note(notes, "%s", out->warning);
+    if (o->crease > 0)
+        out->use.crease = o->crease;
+    out->use.seams |= o->contours == SEAMS || o->contours == ALL;
+    out->use.borders |= o->contours == BORDERS || o->contours == ALL;
+    return CMD_DONE;
+}
+
+static bool guide_says_something(const pmesh_guide *g)
+{
+    return g->weights || g->locks || g->segments || g->constraint_count > 0 ||
+           g->crease > 0 || g->seams || g->borders;
 }
 
 static int encode_failed(const char *name, pmesh_status status,
@@ -216,7 +325,7 @@ static int encode_failed(const char *name, pmesh_status status,
 
 /* Encodes `mesh`; its bytes go to `out`. */
 static int encode(const options *o, const char *name, const asset *mesh,
-                  bake_report *report, asset_bytes *out)
+                  const guide *wish, bake_report *report, asset_bytes *out)
 {
     pmesh_attribute_input attributes[PMESH_MAX_ATTRIBUTES];
     pmesh_encoder_config config = pmesh_encoder_config_default();
@@ -241,6 +350,8 @@ static int encode(const options *o, const char *name, const asset *mesh,
         .attribute_count = o->no_attributes ? 0 : mesh->attribute_count,
     };
     configure(o, &config);
+    if (guide_says_something(&wish->use))
+        config.guide = &wish->use;
     progress_begin(&bar, o->quiet      ? PROGRESS_OFF
                          : o->progress ? PROGRESS_ON
                                        : PROGRESS_AUTO);
@@ -252,6 +363,17 @@ static int encode(const options *o, const char *name, const asset *mesh,
     progress_end(&bar);
     return status == PMESH_OK ? CMD_DONE
                               : encode_failed(name, status, &report->encode);
+}
+
+static int bake_guided(const options *o, const char *name, const asset *mesh,
+                       bake_report *report, asset_bytes *out)
+{
+    guide wish;
+    int code = guide_of(o, name, mesh, &report->notes, &wish);
+    if (code == CMD_DONE)
+        code = encode(o, name, mesh, &wish, report, out);
+    guide_free(&wish);
+    return code;
 }
 
 static int read_asset(const options *o, const char *path,
@@ -283,7 +405,7 @@ static int bake_merged(const options *o, const file_data *data,
         return code;
     report->seconds_read += progress_clock() - start;
     report_note_lines(&report->notes, mesh.warnings);
-    code = encode(o, file_input_name(report->input), &mesh, report, bytes);
+    code = bake_guided(o, file_input_name(report->input), &mesh, report, bytes);
     asset_free(&mesh);
     if (code == CMD_DONE && (int)report->encode.base_coder != o->base)
         report_note(&report->notes,
@@ -298,7 +420,7 @@ static int bake_merged(const options *o, const file_data *data,
 static int bake_one(void *user, const char *name, const asset *mesh,
                     bake_report *report, asset_bytes *out)
 {
-    return encode(user, name, mesh, report, out);
+    return bake_guided(user, name, mesh, report, out);
 }
 
 /* A glTF file with more in it than one mesh can hold. */
@@ -307,7 +429,7 @@ static bool is_scene(const options *o, const file_data *data, const char *path)
     const asset_format format = o->format < 0
                                     ? asset_format_of(path)
                                     : (asset_format)(ASSET_OBJ + o->format);
-    return !o->merge && !o->no_attributes &&
+    return !o->merge && !o->no_attributes && !o->guide &&
            (format == ASSET_GLB || format == ASSET_GLTF ||
             format == ASSET_UNKNOWN) &&
            !load_is_stream(data, path) &&
@@ -337,6 +459,12 @@ static int bake(options *o, const file_data *data, bake_report *report)
 static void tell(const options *o, bake_report *report)
 {
     bake_report_note_losses(report);
+    if (report->encode.end == PMESH_END_EXHAUSTED &&
+        (o->base_faces > 0 || o->base_vertices > 0 || o->base_ratio > 0))
+        report_note(&report->notes,
+                    "the base mesh has %" PRIu32
+                    " faces: nothing more can be contracted",
+                    report->encode.base_faces);
     if (o->json)
         bake_report_json(report, stdout);
     else if (!o->quiet) /* standard output may carry the file */
@@ -360,6 +488,10 @@ int cmd_bake(int argc, char **argv)
         .uv_bits = defaults.texcoord_bits,
         .color_bits = defaults.color_bits,
         .generic_bits = defaults.generic_bits,
+        .normal_weight = defaults.normal_weight,
+        .uv_weight = defaults.texcoord_weight,
+        .color_weight = defaults.color_weight,
+        .generic_weight = defaults.generic_weight,
     };
     int count;
     file_data data;
@@ -369,6 +501,8 @@ int cmd_bake(int argc, char **argv)
     if (parsed != ARGS_RUN)
         return parsed == ARGS_HELP ? CMD_DONE : CMD_USAGE;
     int code = check_options(&o, count);
+    if (code == CMD_DONE)
+        code = check_camera(&o);
     if (code != CMD_DONE)
         return code;
 
@@ -381,6 +515,11 @@ int cmd_bake(int argc, char **argv)
         report_asset_error(file_input_name(report.input), &error);
         return CMD_IO;
     }
+    if (o.guide && !file_read(o.guide, FILE_LIMIT, &o.guide_data, &error)) {
+        report_asset_error(file_input_name(o.guide), &error);
+        file_free(&data);
+        return CMD_IO;
+    }
     report.input_bytes = data.size;
     report.seconds_read = progress_clock() - start;
     if (file_check_output(o.output, true, &data, &error)) {
@@ -390,6 +529,7 @@ int cmd_bake(int argc, char **argv)
         code = CMD_IO;
     }
     file_free(&data);
+    file_free(&o.guide_data);
     report.seconds_total = progress_clock() - start;
     if (code == CMD_DONE)
         tell(&o, &report);

@@ -3,7 +3,6 @@
  * cmd_simplify.c - a mesh file with fewer faces, without a .pmesh in between.
  */
 #include <float.h>
-#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,6 +16,7 @@
 #include "tools/progress.h"
 #include "tools/report.h"
 #include "tools/trig.h"
+#include "tools/triple.h"
 
 typedef struct options {
     const char *input, *output, *camera;
@@ -140,20 +140,6 @@ static int usage(const char *what)
     return CMD_USAGE;
 }
 
-static bool parse_camera(const char *text, double out[3])
-{
-    const char *const end = text + strlen(text);
-
-    for (int i = 0; i < 3; i++) {
-        const char *rest = asset_number_parse(text, end, &out[i]);
-        if (rest == text || !isfinite(out[i]) ||
-            (i < 2 ? *rest != ',' : rest != end))
-            return false;
-        text = rest + (i < 2);
-    }
-    return true;
-}
-
 static int find_format(const options *o, asset_format *format)
 {
     *format = o->format >= 0 ? (asset_format)(ASSET_OBJ + o->format)
@@ -193,7 +179,7 @@ static int configure(const options *o, pmesh_simplify_options *to)
     if (seen != (o->camera != NULL))
         return usage(seen ? "this cost needs --camera"
                           : "--camera is for a cost with camera");
-    if (seen && !parse_camera(o->camera, to->camera))
+    if (seen && !triple_parse(o->camera, to->camera))
         return usage("--camera takes three numbers: 3,0,25");
     return CMD_DONE;
 }

@@ -10,12 +10,15 @@
  *   joint           pmesh_simplify_mesh(), attributes in the quadrics
  *   geometry        the same without: attributes are interpolated on the edges
  *   joint-subset, geometry-subset   both onto vertices of the input
+ *   bake-joint, bake-geometry       levels of a .pmesh file, baked with and
+ *                   without weights, otherwise as by default
+ *   bake-optimal-joint, bake-optimal-geometry   with optimal placement
  *   meshopt         meshopt_simplifyWithAttributes of the package MESHOPT_JS
  *                   names (a path to meshopt_simplifier.js; needs node), with
  *                   the same weights, by way of files in DIR
  *   meshopt-update  meshopt_simplifyWithUpdate, which moves vertices
  *
- * Writes a line of CSV each:
+ * TOOLS="joint bake-joint" takes some of them. Writes a line of CSV each:
  *
  *   model,tool,percent,target,faces,rms,normal,texcoord,color,psnr,flips,open
  *
@@ -35,14 +38,17 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <random>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "encoder/pmesh_simplify.h"
+#include "decoder/pmesh_decode.h"
+#include "encoder/pmesh_encode.h"
 extern "C" {
 #include "tools/corners.h"
 #include "tools/load.h"
@@ -205,6 +211,78 @@ Mesh ours(const Mesh &in, std::size_t target, bool joint, bool subset)
                 out.rows[p * in.width + c.offset + k] =
                     own[i][p * c.components + k];
     }
+    return out;
+}
+
+int collect(void *user, const void *data, std::size_t size)
+{
+    auto *file = static_cast<std::vector<std::uint8_t> *>(user);
+    const auto *bytes = static_cast<const std::uint8_t *>(data);
+    file->insert(file->end(), bytes, bytes + size);
+    return 0;
+}
+
+std::vector<std::uint8_t> bake(const Mesh &in, bool joint, bool optimal)
+{
+    std::vector<pmesh_attribute_input> attributes;
+    std::uint8_t sets[4] = { 0, 0, 0, 0 };
+    for (const Channel &c : in.channels) {
+        pmesh_attribute_input a = {};
+        a.kind = c.kind;
+        a.set = sets[c.kind]++;
+        a.components = static_cast<std::uint8_t>(c.components);
+        a.values = in.rows.data() + c.offset;
+        a.stride = in.width * sizeof(float);
+        a.count = in.points();
+        a.weight = joint && c.kind != PMESH_GENERIC ? weight_of(c.kind) : -1;
+        attributes.push_back(a);
+    }
+    pmesh_mesh_input mesh = {};
+    mesh.positions = in.xyz.data();
+    mesh.vertex_count = in.points();
+    mesh.indices = in.tri.data();
+    mesh.face_count = in.faces();
+    mesh.attributes = attributes.data();
+    mesh.attribute_count = attributes.size();
+    pmesh_encoder_config config = pmesh_encoder_config_default();
+    if (optimal)
+        config.placement = PMESH_OPTIMAL;
+    std::vector<std::uint8_t> file;
+    const pmesh_status status =
+        pmesh_encode(&mesh, &config, collect, &file, nullptr);
+    if (status != PMESH_OK)
+        throw std::runtime_error(pmesh_status_text(status));
+    std::cerr << "    " << (joint ? "joint" : "geometry")
+              << (optimal ? ", optimal: " : ": ") << file.size() << " bytes\n";
+    return file;
+}
+
+/* A level of a file. */
+Mesh baked(const Mesh &in, std::size_t target, bool joint, bool optimal)
+{
+    const std::vector<std::uint8_t> file = bake(in, joint, optimal);
+    pmesh_decoder *dec;
+    pmesh_view view;
+    pmesh_target to = {};
+    to.faces = static_cast<std::uint32_t>(target);
+    if (pmesh_decoder_create(&dec, nullptr) != PMESH_OK ||
+        pmesh_decoder_feed(dec, file.data(), file.size()) != PMESH_OK ||
+        pmesh_decoder_refine(dec, &to, nullptr) < 0 ||
+        pmesh_decoder_mesh(dec, &view) != PMESH_OK)
+        throw std::runtime_error("a baked file does not decode");
+    Mesh out;
+    out.channels = in.channels;
+    out.width = in.width;
+    out.tri.assign(view.indices, view.indices + 3 * view.face_count);
+    std::vector<float> xyz(3 * std::size_t{ view.vertex_count });
+    pmesh_decoder_copy_positions(dec, xyz.data(), 0);
+    out.xyz.assign(xyz.begin(), xyz.end());
+    out.rows.resize(out.width * view.vertex_count);
+    for (std::size_t i = 0; i < in.channels.size(); i++)
+        pmesh_decoder_copy_attribute(dec, static_cast<std::uint32_t>(i),
+                                     out.rows.data() + in.channels[i].offset,
+                                     out.width * sizeof(float));
+    pmesh_decoder_destroy(dec);
     return out;
 }
 
@@ -602,6 +680,40 @@ double uv_extent(const Mesh &mesh)
     return extent > 0 ? extent : 1;
 }
 
+std::vector<std::string> tool_names()
+{
+    std::vector<std::string> tools = { "joint",
+                                       "geometry",
+                                       "joint-subset",
+                                       "geometry-subset",
+                                       "bake-joint",
+                                       "bake-geometry",
+                                       "bake-optimal-joint",
+                                       "bake-optimal-geometry" };
+    if (std::getenv("MESHOPT_JS")) {
+        tools.push_back("meshopt");
+        tools.push_back("meshopt-update");
+    }
+    if (const char *some = std::getenv("TOOLS")) {
+        std::istringstream words(some);
+        tools.assign(std::istream_iterator<std::string>(words), {});
+    }
+    return tools;
+}
+
+Mesh simplified(const Mesh &in, std::size_t target, const std::string &tool,
+                const std::string &dir)
+{
+    auto has = [&](const char *word) {
+        return tool.find(word) != std::string::npos;
+    };
+    if (has("meshopt"))
+        return meshopt(in, target, dir, has("update"));
+    if (has("bake"))
+        return baked(in, target, has("joint"), has("optimal"));
+    return ours(in, target, has("joint"), has("subset"));
+}
+
 void run(const std::string &model, const std::string &dir, int count,
          char **percents)
 {
@@ -615,23 +727,14 @@ void run(const std::string &model, const std::string &dir, int count,
     std::vector<Image> images;
     for (std::size_t view = 0; view < 6; view++)
         images.push_back(draw(original, view / 2, view % 2 ? 1 : -1));
-    std::vector<std::string> tools = { "joint", "geometry", "joint-subset",
-                                       "geometry-subset" };
-    if (std::getenv("MESHOPT_JS")) {
-        tools.push_back("meshopt");
-        tools.push_back("meshopt-update");
-    }
+    const std::vector<std::string> tools = tool_names();
     std::string name = model.substr(model.rfind('/') + 1);
     name = name.substr(0, name.rfind('.'));
     for (int i = 0; i < count; i++) {
         const auto target = static_cast<std::size_t>(std::lround(
             static_cast<double>(in.faces()) * std::atof(percents[i]) / 100));
         for (const std::string &tool : tools) {
-            const Mesh out =
-                tool.compare(0, 7, "meshopt") == 0
-                    ? meshopt(in, target, dir, tool != "meshopt")
-                    : ours(in, target, tool.compare(0, 5, "joint") == 0,
-                           tool.find("subset") != std::string::npos);
+            const Mesh out = simplified(in, target, tool, dir);
             const Searchable result(out, frame);
             Sums sums;
             one_way(original, result, &sums);

@@ -35,11 +35,33 @@ ok 'escapes are valid JSON' is_json
 for option in '--profile compact' '--profile quality' '--placement optimal' \
     '--metric accumulated' '--position-bits 8' '--position-bits 24' \
     '--base-faces 1000' '--max-error 0.01' '--weld 1e-9' '--threshold 0.01' \
-    '--lossless --weld 1e-9'; do
+    '--lossless --weld 1e-9' '--base-ratio 25%' '--base-vertices 300' \
+    '--cost length' '--cost camera --camera 0,0,9' \
+    '--cost quadric-camera --camera 0,0,-9' '--generic-weight 1' \
+    '--normal-weight 0 --uv-weight 0.5 --color-weight 1e6'; do
     # shellcheck disable=SC2086 # two words on purpose
     check "bake $option" 0 bake "$torus" -q -o o.pmesh $option
     check "verify after $option" 0 verify -q o.pmesh
 done
+
+check 'the first stop counts' 0 bake "$torus" -o o.pmesh --json \
+    --base-faces 100 --base-vertices 90 --base-ratio 29%
+ok 'it was the ratio' test "$(json end)$(json base_faces)" = faces1336
+check 'or another one' 0 bake "$torus" -o o.pmesh --json \
+    --base-faces 100 --base-vertices 900
+ok 'the vertices' test "$(json end)$(json base_vertices)" = vertices900
+check 'or the error' 0 bake "$torus" -o o.pmesh --json --base-faces 100 \
+    --max-error 0.001
+ok 'it was' test "$(json end)" = error
+check 'more than there is to contract' 0 bake "$torus" -o o.pmesh --json \
+    --base-faces 1
+ok 'is told' test "$(json end)" = exhausted
+ok 'and warned of' err 'nothing more can be contracted'
+check 'a cost with camera needs one' 2 bake "$torus" -o o.pmesh --cost camera
+check 'the others do not' 2 bake "$torus" -o o.pmesh --camera 1,2,3
+check 'it has three coordinates' 2 bake "$torus" -o o.pmesh --cost camera \
+    --camera 1,2
+check 'a negative weight' 2 bake "$torus" -o o.pmesh --uv-weight -1
 
 check 'bake --base draco' 0 bake "$torus" -o d.pmesh --base draco \
     --base-faces 500 --json
