@@ -378,7 +378,8 @@ static void put_costs(const enc_lod_run *run, pmesh_simplify_output *out)
     out->cost_most = out->cost_mean = 0;
     for (uint32_t i = 0; i < run->heap.count; i++) {
         const enc_heap_entry *e = &run->heap.entry[i];
-        if (run->lod.end_vertex[2 * e->item] == ENC_NONE)
+        if (run->lod.end_vertex[2 * e->item] == ENC_NONE ||
+            (run->turned[e->item] & WAITED))
             continue;
         sum += e->cost;
         count++;

@@ -211,7 +211,7 @@ typedef struct pmesh_simplify_output {
     double error; /* estimated distance to the original, root mean square where
                      it is largest, model units; never falls while faces do */
     double cost_least, cost_mean, cost_most; /* of the contractions that may
-                     come next; 0 if there is none */
+                     come next, those that wait apart; 0 if there is none */
     size_t joined;        /* contractions without an edge: see threshold */
     size_t dropped_faces; /* of the input: degenerate or not finite */
 } pmesh_simplify_output;
