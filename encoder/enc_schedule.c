@@ -59,6 +59,10 @@ enum { FINE_BATCHES = 2 };
 /* The run ends if this many batches in a row take less than a fiftieth. */
 enum { MAX_POOR_BATCHES = 3, POOR_SHARE = 50 };
 
+/* Batches that start closer to the limit of errors than half of it are smaller
+ * by this: the one that leads too far is lost. */
+#define CLOSE_SHARE 0.25
+
 enum { DEFAULT_BASE_FACES = 200, MIN_BASE_FACES = 4, BASE_DIVISOR = 8 };
 
 static pmesh_status schedule_create(const enc_mesh *mesh, enc_schedule *out)
@@ -245,6 +249,8 @@ static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
         plan = BEST; /* strictly in its order */
     if (run->joins_sheets)
         plan.guard = 1; /* there is little else */
+    if (4 * run->reach.most > run->error_limit * run->error_limit)
+        plan.share *= CLOSE_SHARE;
     plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)
         plan.limit = 1;
