@@ -227,7 +227,8 @@ web-deps:
 cross-deps:
 	@tests/install-deps.sh cross
 
-headers := format/pmesh.h encoder/pmesh_encode.h encoder/pmesh_simplify.h \
+headers := format/pmesh.h encoder/pmesh_encode.h encoder/pmesh_guide.h \
+  encoder/pmesh_inspect.h encoder/pmesh_simplify.h \
   encoder/pmesh_scene_encode.h decoder/pmesh_decode.h decoder/pmesh_plan.h \
   decoder/pmesh_scene.h
 lib := $(DESTDIR)$(LIBDIR)
@@ -244,7 +245,8 @@ install: all
 	install -m 644 tools/pmesh.1 $(man)
 	install -d $(share) $(completions)
 	install -m 644 tools/pmesh.bash $(completions)/pmesh
-	install -m 644 tools/python/pmesh.py $(share)
+	install -m 644 tools/python/pmesh.py tools/guide.md $(share)
+	install -m 644 tools/guide.schema.json $(share)
 	install -m 644 $(B)/libpmesh.a $(B)/libpmesh-dec.a $(lib)
 	install -m 755 $(B)/libpmesh.so $(lib)/libpmesh.so.$(version)
 	ln -sf libpmesh.so.$(version) $(lib)/$(soname)
@@ -261,6 +263,7 @@ install: all
 uninstall:
 	rm -f $(bin)/pmesh $(man)/pmesh.1 $(share)/viewer.html
 	rm -f $(completions)/pmesh $(share)/pmesh.py
+	rm -f $(share)/guide.md $(share)/guide.schema.json
 	rm -f $(addprefix $(include)/,$(notdir $(headers)))
 	rm -f $(lib)/libpmesh.a $(lib)/libpmesh-dec.a $(lib)/libpmesh.so*
 	rm -f $(lib)/pkgconfig/pmesh.pc

@@ -137,11 +137,57 @@ static uint8_t examine_general(const enc_surface *s, uint32_t u, uint32_t v)
         ((!v_outer || u_outer) && !link.held[1] ? MAY_BACK : 0));
 }
 
+/* Without it its segment would have less than its share of what is left. */
+static bool has_to_stay(const enc_run *run, uint32_t v)
+{
+    const enc_guide *guide = run->mesh->guide;
+    if (!run->segment_size)
+        return false;
+    return run->segment_size[guide->segment[v]] - 1 <
+           guide->share[guide->segment[v]] * (run->surface.vertex_count - 1);
+}
+
+/* The subset placement has two places to choose from: the direction that leads
+ * away from the constraints, if one does. */
+static unsigned steer(const enc_run *run, const enc_pair *forth)
+{
+    double pull[2];
+
+    enc_pricing_ends(&run->pricing, &run->surface, forth, pull);
+    return pull[0] > pull[1] + ENC_CONTENT   ? MAY_FORTH
+           : pull[1] > pull[0] + ENC_CONTENT ? MAY_BACK
+                                             : 0;
+}
+
+/* What the guide leaves of the directions of a pair. */
+static uint8_t guided_state(const enc_run *run, uint32_t h, uint8_t state)
+{
+    const enc_guide *guide = run->mesh->guide;
+
+    if (!guide->lock && !guide->segment && !guide->pull)
+        return state;
+    run->edge_state[h] = state; /* of which pair_of() takes the kind */
+    const enc_pair pair = pair_of(run, h, false);
+    const unsigned allowed =
+        enc_guide_directions(guide, pair.child, pair.parent);
+    unsigned lost = (allowed & ENC_GUIDE_FORTH ? 0 : MAY_FORTH) |
+                    (allowed & ENC_GUIDE_BACK ? 0 : MAY_BACK);
+    if (has_to_stay(run, pair.child)) /* and the parent is of its segment */
+        lost |= MAY_FORTH | MAY_BACK;
+    if (run->pricing.pull && run->pricing.placement == PMESH_SUBSET &&
+        (run->pricing.pulled[pair.child] || run->pricing.pulled[pair.parent]) &&
+        (state & ~lost & (MAY_FORTH | MAY_BACK)) == (MAY_FORTH | MAY_BACK))
+        lost |= steer(run, &pair);
+    return (uint8_t)(state & ~lost);
+}
+
 static void queue_pair(enc_run *run, uint32_t h, uint8_t state)
 {
     enc_entry best = { UINT32_MAX, 0 };
     double best_quadric = 0;
 
+    if (run->mesh->guide && state)
+        state = guided_state(run, h, state);
     run->edge_state[h] = state;
     for (int back = 0; back < 2; back++) {
         if (!may(state, back != 0))
@@ -367,6 +413,8 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
     for (uint32_t i = 0; link && i < link->count; i++)
         end_face(out, link->edge[i], index);
     run->drift[pair->parent] = (float)error;
+    if (run->segment_size)
+        run->segment_size[run->mesh->guide->segment[pair->child]]--;
     run->taken[pair->child] = run->taken[pair->parent] =
         (uint8_t)(out->batch_count + 1);
     if (run->role)
@@ -496,7 +544,8 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
     if (h < 3 * run->mesh->face_count && s->vertex[h] == ENC_NONE)
         return false;
     const enc_pair pair = pair_of(run, h, back);
-    if (!is_free(run, pair.child) || !is_free(run, pair.parent))
+    if (!is_free(run, pair.child) || !is_free(run, pair.parent) ||
+        has_to_stay(run, pair.child))
         return false;
     if (general)
         return try_general(run, plan, entry, &pair);

@@ -68,6 +68,8 @@ typedef struct enc_run {
     float *drift;        /* per vertex: how far pairs have led from the
                             original there, if there is a limit */
     uint32_t face_target, vertex_target;
+    uint32_t *segment_size; /* per segment of the guide: its vertices; NULL
+                               unless segments have shares */
     enc_reach reach;
     double error_limit;    /* of a level, in steps */
     bool undone;           /* a batch exceeded it */

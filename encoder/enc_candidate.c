@@ -15,6 +15,30 @@
 /* Of equally good grid points the nearer one; relative to the trace. */
 #define ROUNDING_PULL 1e-2
 
+/* Contractions change what a vertex stands for, so a run has its own. */
+static bool copy_guide(const enc_mesh *mesh, enc_pricing *out)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const enc_guide *g = mesh->guide;
+    const size_t n = mesh->vertex_count;
+
+    if (!g)
+        return true;
+    out->lock = g->lock;
+    if (g->factor && (out->factor = pmesh_alloc(a, n, sizeof *out->factor)))
+        memcpy(out->factor, g->factor, n * sizeof *out->factor);
+    if (!g->pull)
+        return out->factor || !g->factor;
+    out->pull = pmesh_alloc(a, n, sizeof *out->pull);
+    out->pulled = pmesh_alloc(a, n, sizeof *out->pulled);
+    if (!out->pull || !out->pulled)
+        return false;
+    memcpy(out->pull, g->pull, n * sizeof *out->pull);
+    for (size_t v = 0; v < n; v++)
+        out->pulled[v] = g->pull[v].weight > 0;
+    return out->factor || !g->factor;
+}
+
 pmesh_status enc_pricing_create(const enc_mesh *mesh,
                                 const pmesh_encoder_config *config,
                                 enc_pricing *out)
@@ -38,7 +62,7 @@ pmesh_status enc_pricing_create(const enc_mesh *mesh,
             pmesh_alloc_zero(a, mesh->vertex_count, sizeof *out->moved);
     out->unevenness =
         pmesh_alloc(a, mesh->vertex_count, sizeof *out->unevenness);
-    if (!out->planes || !out->unevenness ||
+    if (!out->planes || !out->unevenness || !copy_guide(mesh, out) ||
         (config->metric == PMESH_ACCUMULATED && !out->moved)) {
         enc_pricing_destroy(mesh, out);
         return PMESH_E_MEMORY;
@@ -53,6 +77,9 @@ void enc_pricing_destroy(const enc_mesh *mesh, enc_pricing *p)
     pmesh_release(a, p->planes, mesh->vertex_count, sizeof *p->planes);
     pmesh_release(a, p->moved, mesh->vertex_count, sizeof *p->moved);
     pmesh_release(a, p->unevenness, mesh->vertex_count, sizeof *p->unevenness);
+    pmesh_release(a, p->factor, mesh->vertex_count, sizeof *p->factor);
+    pmesh_release(a, p->pull, mesh->vertex_count, sizeof *p->pull);
+    pmesh_release(a, p->pulled, mesh->vertex_count, sizeof *p->pulled);
     enc_looks_destroy(mesh, &p->looks);
     *p = (enc_pricing){ 0 };
 }
@@ -66,6 +93,21 @@ static void difference(const int32_t a[3], const int32_t b[3], double out[3])
 {
     for (int i = 0; i < 3; i++)
         out[i] = (double)(a[i] - b[i]);
+}
+
+static void scale(enc_quadric *q, double factor)
+{
+    for (int i = 0; i < 6; i++)
+        q->a[i] *= factor;
+    for (int i = 0; i < 3; i++)
+        q->b[i] *= factor;
+    q->c *= factor;
+    q->weight *= factor;
+}
+
+static double factor_of(const enc_pricing *p, uint32_t v)
+{
+    return p->factor ? (double)p->factor[v] : 1;
 }
 
 static inline enc_quadric recall(const enc_pricing *p, uint32_t v)
@@ -135,11 +177,64 @@ static void best_of_three(const enc_quadric *q, const double half[3],
     }
 }
 
+static bool is_pulled(const enc_pricing *p, const enc_pair *pair)
+{
+    return p->pull && (p->pulled[pair->child] || p->pulled[pair->parent]);
+}
+
+/* The constraints of both ends about the midpoint; none is all zero. */
+static void sum_pulls(const enc_pricing *p, const enc_pair *pair,
+                      const double half[3], enc_quadric *sum)
+{
+    sum->weight = 0;
+    if (is_pulled(p, pair))
+        sum_about_midpoint(&p->pull[pair->child], &p->pull[pair->parent], half,
+                           sum);
+}
+
+static double pull_at(const enc_quadric *pull, const double x[3])
+{
+    return pull->weight > 0 ? enc_quadric_value(pull, x) / pull->weight : 0;
+}
+
+/* Of the two ends the one that the constraints like better. */
+static void constrained_end(const enc_quadric *pull, const double half[3],
+                            double x[3])
+{
+    const double child[3] = { half[0], half[1], half[2] };
+    const double parent[3] = { -half[0], -half[1], -half[2] };
+    const bool better =
+        enc_quadric_value(pull, child) < enc_quadric_value(pull, parent);
+
+    memcpy(x, better ? child : parent, sizeof child);
+}
+
+/* The best place of all within reach; else, false, one of the ends or halfway.
+ * Constraints that are not to be met together, as two lines of a curve are
+ * not, leave an end: that has met its own. */
+static bool free_place(const enc_quadric *sum, const enc_quadric *pull,
+                       const double half[3], double x[3])
+{
+    const bool found =
+        enc_quadric_minimum(sum, NULL, x) && within_reach(x, half);
+
+    if (!found)
+        best_of_three(sum, half, x);
+    if (pull_at(pull, x) <= ENC_CONTENT)
+        return found;
+    if (enc_quadric_pulled_minimum(sum, pull, x) && within_reach(x, half) &&
+        pull_at(pull, x) <= ENC_CONTENT)
+        return true;
+    constrained_end(pull, half, x);
+    return false;
+}
+
 /* An inner vertex goes to the boundary, never the other way. */
 static bool parent_moves(const enc_pricing *p, const enc_surface *s,
                          const enc_pair *pair)
 {
     return p->placement == PMESH_OPTIMAL &&
+           !(p->lock && p->lock[pair->parent]) &&
            enc_on_boundary(s, pair->child) == enc_on_boundary(s, pair->parent);
 }
 
@@ -148,6 +243,12 @@ static double regularity(const enc_pricing *p, const enc_pair *pair,
 {
     return p->edge_square * (p->taste.length * edge_square +
                              p->taste.uneven * p->unevenness[pair->child]);
+}
+
+/* Of what is no quadric, which has its factors already. */
+static double mean_factor(const enc_pricing *p, const enc_pair *pair)
+{
+    return 0.5 * (factor_of(p, pair->child) + factor_of(p, pair->parent));
 }
 
 /* Of a pair whose parent goes to `middle` + x. */
@@ -173,14 +274,17 @@ static double cost_of(const enc_pricing *p, const enc_surface *s,
         told.half[i] = at[1][i] - middle[i];
         told.place[i] = middle[i] + x[i];
     }
+    if (p->rule.cost == PMESH_COST_LENGTH || p->rule.cost == PMESH_COST_CAMERA)
+        return mean_factor(p, pair) * enc_cost(&p->rule, &told);
     if (p->rule.cost != PMESH_COST_QUADRIC)
         return enc_cost(&p->rule, &told);
     return p->taste.quadric * offer->quadric +
-           regularity(p, pair, 4 * dot(told.half, told.half));
+           mean_factor(p, pair) *
+               regularity(p, pair, 4 * dot(told.half, told.half));
 }
 
-/* Both ends' quadrics about the midpoint: without attributes, and with them.
- * The pair is expected. */
+/* Both ends' quadrics about the midpoint: without attributes and factors, and
+ * with them. The pair is expected. */
 static void sum_both(const enc_pricing *p, const enc_surface *s,
                      const enc_pair *pair, enc_quadric ends[2],
                      const double half[3], bool now, enc_quadric *shape,
@@ -188,11 +292,15 @@ static void sum_both(const enc_pricing *p, const enc_surface *s,
 {
     sum_about_midpoint(&ends[0], &ends[1], half, shape);
     *sum = *shape;
-    if (p->looks.count == 0)
+    if (p->looks.count == 0 && !p->factor)
         return;
     enc_looks_add_child(&p->looks, s, pair->child, now, &ends[0]);
     if (parent_moves(p, s, pair))
         enc_looks_add_parent(&p->looks, s, pair->parent, now, &ends[1]);
+    if (p->factor) {
+        scale(&ends[0], factor_of(p, pair->child));
+        scale(&ends[1], factor_of(p, pair->parent));
+    }
     sum_about_midpoint(&ends[0], &ends[1], half, sum);
 }
 
@@ -215,12 +323,14 @@ enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
         const double back[3] = { -edge[0], -edge[1], -edge[2] };
         offer.distance = enc_quadric_value(&ends[0], back) + ends[1].c;
         enc_looks_add_child(&p->looks, s, pair->child, false, &ends[0]);
-        offer.quadric = enc_quadric_value(&ends[0], back) + ends[1].c;
+        offer.quadric =
+            factor_of(p, pair->child) * enc_quadric_value(&ends[0], back) +
+            factor_of(p, pair->parent) * ends[1].c;
     } else {
-        enc_quadric shape, sum;
+        enc_quadric shape, sum, pull;
         sum_both(p, s, pair, ends, half, false, &shape, &sum);
-        if (!enc_quadric_minimum(&sum, NULL, x) || !within_reach(x, half))
-            best_of_three(&sum, half, x);
+        sum_pulls(p, pair, half, &pull);
+        free_place(&sum, &pull, half, x);
         offer.distance = enc_quadric_value(&shape, x);
         offer.quadric = enc_quadric_value(&sum, x);
     }
@@ -230,35 +340,34 @@ enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
     return offer;
 }
 
-/* Where the parent should go, relative to the midpoint. */
+/* Where the parent should go, relative to the midpoint. A constraint is worth
+ * more than the volume. */
 static void optimal_place(const enc_surface *s, const enc_pair *pair,
-                          const enc_quadric *sum, const double half[3],
-                          double x[3])
+                          const enc_quadric *sum, const enc_quadric *pull,
+                          const double half[3], double x[3])
 {
     const double back[3] = { -half[0], -half[1], -half[2] };
     const uint32_t none = ENC_NONE;
     enc_plane keep = { { 0, 0, 0 }, 0 };
     double y[3];
 
-    if (!enc_quadric_minimum(sum, NULL, x) || !within_reach(x, half)) {
-        best_of_three(sum, half, x);
-        return;
-    }
-    if (enc_on_boundary(s, pair->parent))
+    if (!free_place(sum, pull, half, x) || enc_on_boundary(s, pair->parent))
         return;
     enc_star_volume(s, pair->child, none, half, &keep);
     enc_star_volume(s, pair->parent, pair->child, back, &keep);
     if (enc_quadric_minimum(sum, &keep, y) && within_reach(y, half) &&
+        pull_at(pull, y) <= ENC_CONTENT &&
         enc_quadric_value(sum, y) <= VOLUME_GUARD * enc_quadric_value(sum, x))
         memcpy(x, y, sizeof y);
 }
 
-/* The grid point beside x, of the eight around it, that costs least. */
+/* The grid point beside x, of the eight around it, that costs least; `trace` is
+ * of the surface's part of the quadric. */
 static void round_place(const enc_mesh *mesh, const enc_quadric *sum,
+                        double trace,
                         const double middle[3], const double x[3],
                         int32_t place[3])
 {
-    const double trace = sum->a[0] + sum->a[3] + sum->a[5];
     double best = 0;
 
     for (unsigned corner = 0; corner < 8; corner++) {
@@ -287,7 +396,7 @@ enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
 {
     const int32_t *from = s->position[pair->child];
     const int32_t *to = s->position[pair->parent];
-    enc_quadric ends[2], shape, sum;
+    enc_quadric ends[2], shape, sum, pull, steered;
     enc_offer offer = { .place = { to[0], to[1], to[2] } };
     double edge[3], half[3], middle[3], x[3];
 
@@ -305,32 +414,81 @@ enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
     }
     sum_both(p, s, pair, ends, half, true, &shape, &sum);
     if (parent_moves(p, s, pair)) {
-        optimal_place(s, pair, &sum, half, x);
-        round_place(s->mesh, &sum, middle, x, offer.place);
+        sum_pulls(p, pair, half, &pull);
+        optimal_place(s, pair, &sum, &pull, half, x);
+        if (pull.weight > 0)
+            enc_quadric_add_here(&sum, &pull, &steered);
+        round_place(s->mesh, pull.weight > 0 ? &steered : &sum,
+                    enc_quadric_trace(&sum), middle, x, offer.place);
     }
     for (int i = 0; i < 3; i++)
         x[i] = offer.place[i] - middle[i];
     offer.quadric = enc_quadric_value(&sum, x);
-    if (sum.weight > 0)
-        offer.distance = enc_quadric_value(&shape, x) / sum.weight;
+    if (shape.weight > 0)
+        offer.distance = enc_quadric_value(&shape, x) / shape.weight;
     offer.cost = cost_of(p, s, pair, middle, x, &offer);
     return offer;
+}
+
+void enc_pricing_ends(const enc_pricing *p, const enc_surface *s,
+                      const enc_pair *pair, double pull[2])
+{
+    double half[3], back[3];
+    enc_quadric sum;
+
+    difference(s->position[pair->child], s->position[pair->parent], half);
+    for (int i = 0; i < 3; i++) {
+        half[i] /= 2;
+        back[i] = -half[i];
+    }
+    sum_pulls(p, pair, half, &sum);
+    pull[0] = pull_at(&sum, back);
+    pull[1] = pull_at(&sum, half);
+}
+
+/* The factor of what two vertices become: the mean by area. */
+static double sum_factors(const enc_pricing *p, const enc_pair *pair)
+{
+    const double child = p->planes[pair->child].weight;
+    const double parent = p->planes[pair->parent].weight;
+    const double mean = child * factor_of(p, pair->child) +
+                        parent * factor_of(p, pair->parent);
+    return child + parent > 0 ? mean / (child + parent) : 1;
 }
 
 void enc_pricing_contract(enc_pricing *p, const enc_surface *s,
                           const enc_pair *pair, const int32_t place[3])
 {
-    const enc_quadric child = recall(p, pair->child);
-    const enc_quadric parent = recall(p, pair->parent);
     double from_child[3], from_parent[3];
     enc_quadric sum = { .c = 0 };
 
-    if (p->metric == PMESH_MEMORYLESS)
-        return;
     difference(s->position[pair->child], place, from_child);
     difference(s->position[pair->parent], place, from_parent);
+    if (is_pulled(p, pair)) {
+        p->pulled[pair->parent] = 1;
+        enc_quadric_add(&sum, &p->pull[pair->child], from_child);
+        enc_quadric_add(&sum, &p->pull[pair->parent], from_parent);
+        p->pull[pair->parent] = sum;
+        sum = (enc_quadric){ .c = 0 };
+    }
+    const double both = sum_factors(p, pair);
+    if (p->metric == PMESH_MEMORYLESS) {
+        if (p->factor)
+            p->factor[pair->parent] = (float)both;
+        return;
+    }
+    enc_quadric child = recall(p, pair->child);
+    enc_quadric parent = recall(p, pair->parent);
+    if (p->factor) {
+        scale(&child, (double)p->factor[pair->child]);
+        scale(&parent, (double)p->factor[pair->parent]);
+    }
     enc_quadric_add(&sum, &child, from_child);
     enc_quadric_add(&sum, &parent, from_parent);
+    if (p->factor) { /* the stored one is without */
+        p->factor[pair->parent] = (float)both;
+        scale(&sum, 1 / (double)p->factor[pair->parent]);
+    }
     memcpy(p->planes[pair->parent].a, sum.a, sizeof sum.a);
     p->planes[pair->parent].weight = sum.weight;
     memcpy(p->moved[pair->parent].b, sum.b, sizeof sum.b);

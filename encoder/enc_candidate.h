@@ -11,11 +11,15 @@
  * with e the mean edge of the mesh at the start of the batch. With another
  * pmesh_cost than PMESH_COST_QUADRIC they are what that says. Attributes with
  * weight are part of Q; see enc_looks.h.
+ * Of a guided mesh quadrics are times their factors and the rest is times the
+ * mean factor of the pair; constraints move the place, whatever it costs, but
+ * only if the best one is not good enough for them.
  */
 #ifndef ENC_CANDIDATE_H
 #define ENC_CANDIDATE_H
 
 #include "encoder/enc_cost.h"
+#include "encoder/enc_guide.h"
 #include "encoder/enc_looks.h"
 #include "encoder/enc_star.h"
 
@@ -40,7 +44,15 @@ typedef struct enc_pricing {
     enc_planes *planes; /* per vertex: its quadric, about its position ... */
     enc_moved *moved;   /* ... NULL with PMESH_MEMORYLESS */
     float *unevenness;  /* per vertex: |v - mean of its ring|^2 */
+    float *factor;      /* per vertex, as in enc_guide; or NULL */
+    enc_quadric *pull;  /* likewise, about its position */
+    uint8_t *pulled;    /* whether there is any */
+    const uint8_t *lock;
 } enc_pricing;
+
+/* Mean squared distances from constraints up to this are as good as none: a
+ * quarter of a step. */
+#define ENC_CONTENT (1.0 / 16)
 
 typedef struct enc_offer {
     int32_t place[3]; /* where the parent will be */
@@ -69,6 +81,11 @@ enc_offer enc_pricing_estimate(const enc_pricing *pricing, const enc_surface *s,
  * the looks. */
 enc_offer enc_pricing_offer(const enc_pricing *pricing, const enc_surface *s,
                             const enc_pair *pair);
+
+/* Mean squared distance, in steps, from what the constraints of both ends ask
+ * for: at the parent's place, and at the child's. */
+void enc_pricing_ends(const enc_pricing *pricing, const enc_surface *s,
+                      const enc_pair *pair, double pull[2]);
 
 /* To be told of each contraction before it happens. */
 void enc_pricing_contract(enc_pricing *pricing, const enc_surface *s,

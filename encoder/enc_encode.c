@@ -14,6 +14,7 @@
 #include "encoder/enc_schedule.h"
 #include "encoder/enc_stream.h"
 #include "format/alloc.h"
+#include "format/quantize.h"
 
 #define MAX_WEIGHT 1e6
 
@@ -117,13 +118,13 @@ static bool cancelled(const job *j, const char *stage, double done)
 /* ---- the level table --------------------------------------------------- */
 
 /* Level k is the mesh after all batches but the last k. Bounds are rounded up,
- * to a float. */
+ * to a finite float. */
 static void fill_errors(job *j)
 {
     const enc_schedule *s = &j->schedule;
     j->header.levels[s->batch_count].error = 0;
     for (uint32_t b = 0; b < s->batch_count; b++)
-        j->header.levels[s->batch_count - b - 1].error = (float)(
+        j->header.levels[s->batch_count - b - 1].error = pmesh_narrow(
             s->batch_error[b] * j->mesh->grid.step * (1 + FLT_EPSILON));
 }
 
@@ -334,8 +335,8 @@ static void fill_report(job *j, uint64_t header_size, uint64_t file_size)
             .vertices = e->wedges,
             .error = e->error,
             .inflation = (float)e->inflation / PMESH_INFLATE_ONE,
-            .rms = (float)(unit * e->rms),
-            .furthest = (float)(unit * e->most)
+            .rms = pmesh_narrow(unit * e->rms),
+            .furthest = pmesh_narrow(unit * e->most)
         };
     }
     r->measured = h->measured;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "encoder/enc_import.h"
 
+#include "encoder/enc_guide.h"
 #include "format/alloc.h"
 #include "format/quantize.h"
 
@@ -361,10 +362,13 @@ static pmesh_status run_import(enc_importer *im)
     status = load_mesh(im);
     if (!status)
         status = enc_make_manifold(im);
-    release_numbers(im);
     if (!status)
         status = enc_wedges(im->mesh, im->in, im->config, im->source,
                             &im->report->not_finite_values);
+    if (!status)
+        status = enc_guide_create(im->mesh, im->in, im->config->guide,
+                                  im->number, im->source);
+    release_numbers(im);
     pmesh_release(&im->mesh->allocator, im->source, im->source_count,
                   sizeof *im->source);
     return status;

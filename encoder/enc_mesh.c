@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "encoder/enc_mesh.h"
 
+#include "encoder/enc_guide.h"
 #include "encoder/enc_import.h"
 #include "format/alloc.h"
 #include "format/layout.h"
@@ -12,6 +13,7 @@ void enc_mesh_destroy(enc_mesh *mesh)
     const pmesh_allocator *a = &mesh->allocator;
     const size_t corners = 3 * (size_t)mesh->face_count;
 
+    enc_guide_destroy(mesh);
     pmesh_release(a, mesh->exact, mesh->vertex_count, sizeof *mesh->exact);
     pmesh_release(a, mesh->source, mesh->vertex_count, sizeof *mesh->source);
     pmesh_release(a, mesh->position, mesh->vertex_count,

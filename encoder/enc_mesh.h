@@ -31,6 +31,8 @@
 
 #define ENC_NONE UINT32_MAX
 
+typedef struct enc_guide enc_guide;
+
 typedef struct enc_mesh {
     pmesh_allocator allocator;
     pmesh_grid grid;
@@ -59,6 +61,8 @@ typedef struct enc_mesh {
     uint32_t attribute_count;
     pmesh_attribute attribute[PMESH_MAX_ATTRIBUTES];
     float weight[PMESH_MAX_ATTRIBUTES]; /* in costs; see enc_looks.h */
+
+    enc_guide *guide; /* enc_guide.h; NULL: nobody asked for anything */
 } enc_mesh;
 
 /*

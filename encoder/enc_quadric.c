@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "encoder/enc_quadric.h"
 
+#include <stddef.h>
+
 /* Relative to the trace, so that the result does not depend on the unit. A
  * hundred times more costs a tenth of the accuracy on smooth meshes; without
  * any, planar regions throw vertices far away. */
@@ -30,21 +32,22 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-bool enc_quadric_minimum(const enc_quadric *q, const enc_plane *keep,
-                         double x[3])
+/* `weak`: the pull to the centre, as a share of the trace. */
+static bool minimum(const enc_quadric *q, double weak, const enc_plane *keep,
+                    double x[3])
 {
-    const double trace = q->a[0] + q->a[3] + q->a[5];
+    const double trace = enc_quadric_trace(q);
     double m[6], inverse[6];
 
     x[0] = x[1] = x[2] = 0;
     if (!(trace > 0))
         return false;
-    /* Scaled to trace 1: the determinant is then at least PULL^3. */
+    /* Scaled to trace 1: the determinant is then at least weak^3. */
     for (int i = 0; i < 6; i++)
         m[i] = q->a[i] / trace;
-    m[0] += PULL;
-    m[3] += PULL;
-    m[5] += PULL;
+    m[0] += weak;
+    m[3] += weak;
+    m[5] += weak;
     const double det = adjugate(m, inverse);
     const double scale = 1 / (det * trace);
     const double goal[3] = { -q->b[0] * scale, -q->b[1] * scale,
@@ -67,4 +70,21 @@ bool enc_quadric_minimum(const enc_quadric *q, const enc_plane *keep,
             x[i] += t * step[i];
     }
     return true;
+}
+
+bool enc_quadric_minimum(const enc_quadric *q, const enc_plane *keep,
+                         double x[3])
+{
+    return minimum(q, PULL, keep, x);
+}
+
+bool enc_quadric_pulled_minimum(const enc_quadric *q, const enc_quadric *pull,
+                                double x[3])
+{
+    const double trace = enc_quadric_trace(q);
+    const double both = trace + enc_quadric_trace(pull);
+    enc_quadric sum;
+
+    enc_quadric_add_here(q, pull, &sum);
+    return minimum(&sum, trace > 0 ? PULL * trace / both : PULL, NULL, x);
 }

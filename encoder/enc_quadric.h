@@ -81,6 +81,22 @@ static inline void enc_quadric_add(enc_quadric *sum, const enc_quadric *q,
     sum->weight += q->weight;
 }
 
+/* The size of a quadric, whatever its directions. */
+static inline double enc_quadric_trace(const enc_quadric *q)
+{
+    return q->a[0] + q->a[3] + q->a[5];
+}
+
+/* *out becomes the sum of two quadrics about one centre. */
+static inline void enc_quadric_add_here(const enc_quadric *q,
+                                        const enc_quadric *r, enc_quadric *out)
+{
+    const double here[3] = { 0, 0, 0 };
+
+    *out = *q;
+    enc_quadric_add(out, r, here);
+}
+
 /*
  * The place of the least value, with a pull to the centre so weak that it
  * decides only along directions in which the quadric is flat.
@@ -92,5 +108,10 @@ static inline void enc_quadric_add(enc_quadric *sum, const enc_quadric *q,
  */
 bool enc_quadric_minimum(const enc_quadric *q, const enc_plane *keep,
                          double x[3]);
+
+/* Of the sum of both; the weak pull is measured by q alone, so that a strong
+ * `pull` moves nothing along the directions that it leaves free. */
+bool enc_quadric_pulled_minimum(const enc_quadric *q, const enc_quadric *pull,
+                                double x[3]);
 
 #endif

@@ -56,6 +56,12 @@ enum { FINE_BATCHES = 2 };
 /* Levels that start below this share of the vertices are coarse. */
 #define COARSE_VERTICES 0.2
 
+/* Where vertices have weights, no batch goes beyond the share of the pairs that
+ * is not heavy, but to this one in any case: heavy pairs would have to be taken
+ * for want of others. Heavy is so many times the lightest. */
+#define LEAST_GUARD 0.5
+#define HEAVY 2.0f
+
 /* The run ends if this many batches in a row take less than a fiftieth. */
 enum { MAX_POOR_BATCHES = 3, POOR_SHARE = 50 };
 
@@ -147,6 +153,22 @@ static pmesh_status find_near(const enc_mesh *mesh, enc_run *run)
     return status;
 }
 
+/* Counts the vertices of segments that have shares. */
+static bool count_segments(const enc_mesh *mesh, enc_run *run)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const enc_guide *g = mesh->guide;
+    if (!g || !g->share)
+        return true;
+    run->segment_size =
+        pmesh_alloc_zero(a, g->segment_count, sizeof *run->segment_size);
+    if (!run->segment_size)
+        return false;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++)
+        run->segment_size[g->segment[v]]++;
+    return true;
+}
+
 static pmesh_status run_create(const enc_mesh *mesh,
                                const pmesh_encoder_config *config,
                                enc_schedule *schedule, enc_run *run)
@@ -167,6 +189,8 @@ static pmesh_status run_create(const enc_mesh *mesh,
         status = enc_reach_create(mesh, &run->reach);
     if (status == PMESH_OK)
         status = find_near(mesh, run);
+    if (status == PMESH_OK && !count_segments(mesh, run))
+        status = PMESH_E_MEMORY;
     if (status != PMESH_OK)
         return status;
     run->edge_state = pmesh_alloc_zero(
@@ -197,6 +221,9 @@ static void run_destroy(const enc_mesh *mesh, enc_run *run)
     pmesh_release(a, run->taken, mesh->vertex_count, sizeof *run->taken);
     pmesh_release(a, run->role, mesh->vertex_count, sizeof *run->role);
     pmesh_release(a, run->drift, mesh->vertex_count, sizeof *run->drift);
+    if (mesh->guide)
+        pmesh_release(a, run->segment_size, mesh->guide->segment_count,
+                      sizeof *run->segment_size);
 }
 
 uint32_t enc_base_target(const pmesh_encoder_config *config, uint32_t faces)
@@ -233,6 +260,22 @@ static void set_targets(enc_run *run)
                            : INFINITY;
 }
 
+/* Of the vertices that are left, those that are not heavy. */
+static double light_share(const enc_run *run)
+{
+    const float *factor = run->pricing.factor;
+    const uint32_t *first = run->surface.first;
+    float least = INFINITY;
+    uint32_t light = 0;
+
+    for (uint32_t v = 0; v < run->mesh->vertex_count; v++)
+        if (first[v] != ENC_NONE && factor[v] < least)
+            least = factor[v];
+    for (uint32_t v = 0; v < run->mesh->vertex_count; v++)
+        light += first[v] != ENC_NONE && factor[v] < HEAVY * least;
+    return fmax(LEAST_GUARD, (double)light / run->surface.vertex_count);
+}
+
 static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
 {
     const uint32_t n = run->surface.vertex_count;
@@ -247,6 +290,8 @@ static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
                                                               : QUALITY;
     if (run->config->cost != PMESH_COST_QUADRIC)
         plan = BEST; /* strictly in its order */
+    if (run->pricing.factor)
+        plan.guard = fmin(plan.guard, light_share(run));
     if (run->joins_sheets)
         plan.guard = 1; /* there is little else */
     if (4 * run->reach.most > run->error_limit * run->error_limit)

@@ -24,6 +24,7 @@
 #ifndef PMESH_ENCODE_H
 #define PMESH_ENCODE_H
 
+#include "encoder/pmesh_guide.h"
 #include "encoder/pmesh_simplify.h"
 
 #ifdef __cplusplus
@@ -111,6 +112,7 @@ typedef struct pmesh_encoder_config {
     double threshold;          /* vertices this close may be contracted though
                                   they have no edge, model units; 0: none */
     pmesh_topology topology;   /* default PMESH_TOPOLOGY_AUTO */
+    const pmesh_guide *guide;  /* NULL: every vertex counts the same */
     int lossless;              /* non-zero: a last layer with the input's
                                   positions, bit for bit, see below */
     /* Stops, of which the first one that is reached counts. */
@@ -206,11 +208,11 @@ typedef int (*pmesh_write)(void *user, const void *data, size_t size);
  * report: NULL or filled as far as the call came; set report->clock (or zero
  * the struct) before the call.
  *
- * Returns PMESH_OK, E_ARGUMENT (config out of range), E_MEMORY, E_LIMIT (more
- * than 2^30 corners), E_CANCELLED, E_WRITE, E_NO_FACES, E_INDEX, E_NOT_FINITE
- * (every face has a position that is not finite), or E_CORRUPT (a bug of ours:
- * the file would not hold the mesh). On failure nothing has been written, except
- * with E_WRITE.
+ * Returns PMESH_OK, E_ARGUMENT (config or guide out of range), E_MEMORY,
+ * E_LIMIT (more than 2^30 corners), E_CANCELLED, E_WRITE, E_NO_FACES, E_INDEX,
+ * E_NOT_FINITE (every face has a position that is not finite), or E_CORRUPT (a
+ * bug of ours: the file would not hold the mesh). On failure nothing has been
+ * written, except with E_WRITE.
  */
 PMESH_API pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
                                     const pmesh_encoder_config *config,

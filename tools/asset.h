@@ -26,6 +26,7 @@ typedef struct asset_attribute {
     uint8_t set;
     uint8_t components; /* 3 for normals, 2 texcoords, 3..4 colours, 1..4 */
     uint8_t bits;       /* for baking; 0: the kind's default */
+    char name[24];      /* as the file calls it, where that is no rule */
     float *values;
     size_t count;
     uint32_t *indices;
@@ -42,6 +43,7 @@ typedef struct asset {
     uint32_t material_count;
     asset_attribute attributes[PMESH_MAX_ATTRIBUTES];
     size_t attribute_count;
+    bool texcoords_down; /* v runs down the picture, as in glTF */
     char warnings[1024]; /* lines of text: what a reader repaired or left out */
 } asset;
 

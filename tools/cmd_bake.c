@@ -14,6 +14,7 @@
 #include "tools/cmd.h"
 #include "tools/draco_base.h"
 #include "tools/file.h"
+#include "tools/guide.h"
 #include "tools/load.h"
 #include "tools/progress.h"
 #include "tools/scene_parts.h"
@@ -25,9 +26,13 @@ typedef struct options {
     int format; /* which of CMD_FORMATS; -1: not given */
     uint32_t position_bits, normal_bits, uv_bits, color_bits, generic_bits;
     uint32_t base_faces, base_vertices, threads;
-    double base_ratio, max_error, weld, threshold;
+    const char *guide, *weights;
+    int contours; /* which of none, seams, borders, all */
+    double base_ratio, max_error, weld, threshold, crease;
     double normal_weight, uv_weight, color_weight, generic_weight;
-    bool lossless, measure, no_attributes, merge, json, quiet, verbose, progress;
+    file_data guide_data;
+    bool lossless, measure, no_attributes, merge, json, quiet, verbose;
+    bool progress;
 } options;
 
 #define AT(member) .offset = offsetof(options, member)
@@ -108,6 +113,21 @@ static const args_option option_table[] = {
               "as it sees it" },
     { .name = "camera", .kind = ARGS_TEXT, .value = "X,Y,Z", AT(camera),
       .help = "where it is (model units)" },
+    { .name = "guide", .kind = ARGS_TEXT, .value = "FILE", AT(guide),
+      .help = "what matters: weights, locks, contours, planes,\n"
+              "points and segments from a guide file" },
+    { .name = "weights", .kind = ARGS_TEXT, .value = "SOURCE", AT(weights),
+      .help = "where detail stays longest, 0 to 1 per vertex:\n"
+              "color:r, color:r-b, attr:NAME, texture:MASK.png;\n"
+              "default the attribute _LOD_WEIGHT, if any" },
+    { .name = "crease", .kind = ARGS_NUMBER, .value = "DEGREES", .min = 0,
+      .max = 180, AT(crease),
+      .help = "edges that bend more are contours: vertices stay\n"
+              "on them; default 0: none" },
+    { .name = "contours", .kind = ARGS_CHOICE,
+      .value = "none|seams|borders|all", AT(contours),
+      .help = "and so are seams of attributes, or borders of\n"
+              "materials; default none" },
     { .name = "weld", .kind = ARGS_NUMBER, .value = "EPS", .min = 0,
       .max = DBL_MAX, AT(weld),
       .help = "join positions this close (model units);\n"
@@ -241,6 +261,46 @@ static int collect(void *user, const void *data, size_t size)
     return bytes->failed;
 }
 
+/* The guide of a mesh by file, weights and creases; an exit code. */
+static int guide_of(const options *o, const char *name, const asset *mesh,
+                    report_notes *notes, guide *out)
+{
+    enum { SEAMS = 1, BORDERS, ALL };
+    asset_error error;
+    bool ok;
+
+    if (!guide_create(out)) {
+        report_error(name, NULL, "out of memory");
+        return CMD_IO;
+    }
+    if (o->weights)
+        ok = guide_take_weights(out, mesh, o->weights, &error);
+    else
+        ok = guide_take_own_weights(out, mesh, &error);
+    if (!ok) {
+        report_asset_error(name, &error);
+        return CMD_ASSET;
+    }
+    if (o->guide && !guide_read(out, o->guide_data.bytes, o->guide_data.size,
+                                mesh, &error)) {
+        report_asset_error(file_input_name(o->guide), &error);
+        return CMD_ASSET;
+    }
+    if (out->warning[0])
+        report_note(notes, "%s", out->warning);
+    if (o->crease > 0)
+        out->use.crease = o->crease;
+    out->use.seams |= o->contours == SEAMS || o->contours == ALL;
+    out->use.borders |= o->contours == BORDERS || o->contours == ALL;
+    return CMD_DONE;
+}
+
+static bool guide_says_something(const pmesh_guide *g)
+{
+    return g->weights || g->locks || g->segments || g->constraint_count > 0 ||
+           g->crease > 0 || g->seams || g->borders;
+}
+
 static int encode_failed(const char *name, pmesh_status status,
                          const pmesh_encode_report *report)
 {
@@ -270,7 +330,7 @@ static int encode_failed(const char *name, pmesh_status status,
 
 /* Encodes `mesh`; its bytes go to `out`. */
 static int encode(const options *o, const char *name, const asset *mesh,
-                  bake_report *report, asset_bytes *out)
+                  const guide *wish, bake_report *report, asset_bytes *out)
 {
     pmesh_attribute_input attributes[PMESH_MAX_ATTRIBUTES];
     pmesh_encoder_config config = pmesh_encoder_config_default();
@@ -295,6 +355,8 @@ static int encode(const options *o, const char *name, const asset *mesh,
         .attribute_count = o->no_attributes ? 0 : mesh->attribute_count,
     };
     configure(o, &config);
+    if (guide_says_something(&wish->use))
+        config.guide = &wish->use;
     progress_begin(&bar, o->quiet      ? PROGRESS_OFF
                          : o->progress ? PROGRESS_ON
                                        : PROGRESS_AUTO);
@@ -306,6 +368,17 @@ static int encode(const options *o, const char *name, const asset *mesh,
     progress_end(&bar);
     return status == PMESH_OK ? CMD_DONE
                               : encode_failed(name, status, &report->encode);
+}
+
+static int bake_guided(const options *o, const char *name, const asset *mesh,
+                       bake_report *report, asset_bytes *out)
+{
+    guide wish;
+    int code = guide_of(o, name, mesh, &report->notes, &wish);
+    if (code == CMD_DONE)
+        code = encode(o, name, mesh, &wish, report, out);
+    guide_free(&wish);
+    return code;
 }
 
 static int read_asset(const options *o, const char *path,
@@ -337,7 +410,7 @@ static int bake_merged(const options *o, const file_data *data,
         return code;
     report->seconds_read += progress_clock() - start;
     report_note_lines(&report->notes, mesh.warnings);
-    code = encode(o, file_input_name(report->input), &mesh, report, bytes);
+    code = bake_guided(o, file_input_name(report->input), &mesh, report, bytes);
     asset_free(&mesh);
     if (code == CMD_DONE && (int)report->encode.base_coder != o->base)
         report_note(&report->notes,
@@ -352,7 +425,7 @@ static int bake_merged(const options *o, const file_data *data,
 static int bake_one(void *user, const char *name, const asset *mesh,
                     bake_report *report, asset_bytes *out)
 {
-    return encode(user, name, mesh, report, out);
+    return bake_guided(user, name, mesh, report, out);
 }
 
 /* A glTF file with more in it than one mesh can hold. */
@@ -361,7 +434,7 @@ static bool is_scene(const options *o, const file_data *data, const char *path)
     const asset_format format = o->format < 0
                                     ? asset_format_of(path)
                                     : (asset_format)(ASSET_OBJ + o->format);
-    return !o->merge && !o->no_attributes &&
+    return !o->merge && !o->no_attributes && !o->guide &&
            (format == ASSET_GLB || format == ASSET_GLTF ||
             format == ASSET_UNKNOWN) &&
            !load_is_stream(data, path) &&
@@ -447,6 +520,11 @@ int cmd_bake(int argc, char **argv)
         report_asset_error(file_input_name(report.input), &error);
         return CMD_IO;
     }
+    if (o.guide && !file_read(o.guide, FILE_LIMIT, &o.guide_data, &error)) {
+        report_asset_error(file_input_name(o.guide), &error);
+        file_free(&data);
+        return CMD_IO;
+    }
     report.input_bytes = data.size;
     report.seconds_read = progress_clock() - start;
     if (file_check_output(o.output, true, &data, &error)) {
@@ -456,6 +534,7 @@ int cmd_bake(int argc, char **argv)
         code = CMD_IO;
     }
     file_free(&data);
+    file_free(&o.guide_data);
     report.seconds_total = progress_clock() - start;
     if (code == CMD_DONE)
         tell(&o, &report);

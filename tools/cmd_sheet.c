@@ -12,6 +12,9 @@
 #include "tools/cmd.h"
 #include "tools/digits.h"
 #include "tools/file.h"
+#include "tools/glyphs.h"
+#include "tools/guide.h"
+#include "tools/heat.h"
 #include "tools/load.h"
 #include "tools/report.h"
 #include "tools/scene_file.h"
@@ -21,8 +24,9 @@
 #define DEFAULT_PANELS 6u
 
 typedef struct options {
-    const char *output, *faces;
-    uint32_t size, columns;
+    const char *output, *faces, *guide, *weights, *camera;
+    uint32_t size, columns, ellipsoids;
+    int heat;
     double yaw, pitch;
     bool wire, smooth;
 } options;
@@ -31,7 +35,8 @@ typedef struct options {
 typedef struct job {
     options opt;
     const char *input;
-    file_data data;
+    file_data data, guide_data;
+    asset finest;
     budgets list;
     sheet sheet;
     raster_camera camera;
@@ -49,6 +54,24 @@ static const args_option option_table[] = {
     { .name = "smooth", .kind = ARGS_FLAG,
       .offset = offsetof(options, smooth),
       .help = "shade across edges that are not sharp" },
+    { .name = "heat", .kind = ARGS_CHOICE, .value = "none|cost|error|weights",
+      .offset = offsetof(options, heat),
+      .help = "colour by what contracting the cheapest edge of a\n"
+              "vertex costs; full detail by its distance from the\n"
+              "level; or by weights" },
+    { .name = "weights", .kind = ARGS_TEXT, .value = "SOURCE",
+      .offset = offsetof(options, weights),
+      .help = "weights to show, as of pmesh bake" },
+    { .name = "guide", .kind = ARGS_TEXT, .value = "FILE",
+      .offset = offsetof(options, guide),
+      .help = "a guide file: its weights and cameras" },
+    { .name = "camera", .kind = ARGS_TEXT, .value = "NAME",
+      .offset = offsetof(options, camera),
+      .help = "look as this camera of the guide does" },
+    { .name = "ellipsoids", .kind = ARGS_COUNT, .value = "N", .min = 1,
+      .max = 5000, .offset = offsetof(options, ellipsoids),
+      .help = "draw the quadrics of N vertices, too: flat on flat\n"
+              "surfaces, thin along edges, round in corners" },
     { .name = "size", .kind = ARGS_COUNT, .value = "PX", .min = 120,
       .max = 1024, .offset = offsetof(options, size),
       .help = "width of a panel (default 360)" },
@@ -77,7 +100,8 @@ static const args_command command = {
         "and its distance from full\ndetail, absolute and as a share of the "
         "bounding box's diagonal.\n\n"
         "  pmesh sheet bunny.pmesh -o bunny.png\n"
-        "  pmesh sheet bunny.pmesh -o bunny.png --faces 500,5k --wire\n",
+        "  pmesh sheet bunny.pmesh -o bunny.png --faces 500,5k --wire\n"
+        "  pmesh sheet bunny.pmesh -o error.png --heat error\n",
 };
 
 /* ---- panels ------------------------------------------------------------- */
@@ -139,23 +163,76 @@ static raster_style style_of(const job *j)
     return (raster_style){ .wire = j->opt.wire, .flat = !j->opt.smooth };
 }
 
+/* ---- heat --------------------------------------------------------------- */
+
+/* A guide of what the options say; true unless *error says why not. */
+static bool guide_for(const job *j, const asset *mesh, guide *g,
+                      asset_error *error)
+{
+    if (!guide_create(g))
+        return asset_fail(error, "", "out of memory");
+    if (j->opt.weights ? !guide_take_weights(g, mesh, j->opt.weights, error)
+                       : !guide_take_own_weights(g, mesh, error))
+        return false;
+    return !j->opt.guide || guide_read(g, j->guide_data.bytes,
+                                       j->guide_data.size, mesh, error);
+}
+
+static bool heat_weights(const job *j, const asset *mesh, heat *out,
+                         asset_error *error)
+{
+    guide g;
+    bool ok = guide_for(j, mesh, &g, error);
+    if (ok && !heat_of_weights(mesh, &g, out))
+        ok = asset_fail(error, "", "out of memory");
+    guide_free(&g);
+    return ok;
+}
+
+/* Draws a level as the options say; it may get glyphs. *error is why not. */
+static bool draw_mesh_panel(job *j, uint32_t index, asset *mesh,
+                            sheet_caption *caption, asset_error *error)
+{
+    raster_style style = style_of(j);
+    asset *shown = j->opt.heat == HEAT_ERROR ? &j->finest : mesh;
+    heat h = { 0 };
+    bool ok = true;
+
+    if (j->opt.heat == HEAT_WEIGHTS)
+        ok = heat_weights(j, mesh, &h, error);
+    else if (j->opt.heat == HEAT_COST)
+        ok = heat_of_costs(mesh, &h);
+    else if (j->opt.heat == HEAT_ERROR)
+        ok = heat_of_errors(shown, mesh, &h);
+    if (ok && j->opt.ellipsoids > 0 && shown == mesh) {
+        style.plain = mesh->face_count;
+        ok = glyphs_add(mesh, j->opt.ellipsoids);
+    }
+    if (ok && h.value) {
+        style.heat = h.value;
+        memcpy(caption->blue, h.blue, sizeof h.blue);
+        memcpy(caption->red, h.red, sizeof h.red);
+    }
+    ok = ok && sheet_draw(&j->sheet, index, shown, &j->camera, &style, caption);
+    heat_free(&h);
+    return ok;
+}
+
 /* Shows a level and draws it. */
-static bool draw_level(job *j, uint32_t index, const stream *s)
+static bool draw_level(job *j, uint32_t index, const stream *s,
+                       asset_error *error)
 {
     const pmesh_target target = { .faces = j->list.faces[index] };
-    const raster_style style = style_of(j);
     sheet_caption caption;
     pmesh_view view;
     asset mesh;
-    asset_error error;
 
     pmesh_decoder_refine(s->decoder, &target, NULL);
     if (pmesh_decoder_mesh(s->decoder, &view) != PMESH_OK ||
-        !asset_from_decoder(s->decoder, &mesh, &error))
+        !asset_from_decoder(s->decoder, &mesh, error))
         return false;
     set_level_caption(&s->header, &view, &caption);
-    const bool drawn = sheet_draw(&j->sheet, index, &mesh, &j->camera, &style,
-                                  &caption);
+    const bool drawn = draw_mesh_panel(j, index, &mesh, &caption, error);
     asset_free(&mesh);
     return drawn;
 }
@@ -169,9 +246,31 @@ static bool begin_sheet(job *j, const char *remark)
                        j->opt.size, name_of(j->input), remark);
 }
 
+/* Takes the angles of the guide's camera. */
+static bool find_camera(job *j, const asset *finest, asset_error *error)
+{
+    guide g;
+    bool found = false;
+
+    bool ok = guide_for(j, finest, &g, error);
+    for (size_t i = 0; ok && i < g.camera_count && !found; i++) {
+        found = strcmp(g.cameras[i].name, j->opt.camera) == 0;
+        if (found) {
+            j->opt.yaw = g.cameras[i].yaw;
+            j->opt.pitch = g.cameras[i].pitch;
+        }
+    }
+    if (ok && !found)
+        asset_fail(error, "", "the guide has no camera '%s'", j->opt.camera);
+    guide_free(&g);
+    return found;
+}
+
 /* Fits the camera to the finest mesh. */
 static int fit_camera(job *j, const asset *finest, asset_error *error)
 {
+    if (j->opt.camera && !find_camera(j, finest, error))
+        return CMD_ASSET;
     /* A model that turns to its left shows more of its right: yaw > 0. */
     if (raster_camera_fit(&j->camera, finest, -j->opt.yaw / 360,
                           j->opt.pitch / 360))
@@ -203,7 +302,6 @@ static void set_remark(const stream *s, uint64_t bytes, char *out, size_t size)
 
 static int draw_stream(job *j, const stream *s, asset_error *error)
 {
-    asset finest;
     char remark[128];
 
     if (!s->shown) {
@@ -211,26 +309,25 @@ static int draw_stream(job *j, const stream *s, asset_error *error)
                    j->data.size);
         return CMD_STREAM;
     }
-    if (!asset_from_decoder(s->decoder, &finest, error))
+    if (!asset_from_decoder(s->decoder, &j->finest, error))
         return CMD_IO;
-    const int code = fit_camera(j, &finest, error);
-    asset_free(&finest);
+    const int code = fit_camera(j, &j->finest, error);
     if (code != CMD_DONE)
         return code;
     if (j->list.count == 0)
         budgets_spread(s->header.base_faces, s->progress.faces, DEFAULT_PANELS,
                        &j->list);
     set_remark(s, j->data.size, remark, sizeof remark);
+    out_of_memory(error); /* unless something else is said */
     bool ok = begin_sheet(j, remark);
     for (uint32_t i = 0; ok && i < j->list.count; i++)
-        ok = draw_level(j, i, s);
-    return ok ? CMD_DONE : out_of_memory(error);
+        ok = draw_level(j, i, s, error);
+    return ok ? CMD_DONE : j->opt.heat == HEAT_WEIGHTS ? CMD_ASSET : CMD_IO;
 }
 
-static int draw_mesh(job *j, const asset *mesh, asset_error *error)
+static int draw_mesh(job *j, asset *mesh, asset_error *error)
 {
-    const raster_style style = style_of(j);
-    sheet_caption caption = { { 0 }, { 0 }, { 0 }, { 0 } };
+    sheet_caption caption = { { 0 }, { 0 }, { 0 }, { 0 }, { 0 }, { 0 } };
     char number[32];
 
     const int code = fit_camera(j, mesh, error);
@@ -243,9 +340,9 @@ static int draw_mesh(job *j, const asset *mesh, asset_error *error)
              number);
     digits_bytes(caption.right, j->data.size);
     j->list.count = 1;
-    if (!begin_sheet(j, "") ||
-        !sheet_draw(&j->sheet, 0, mesh, &j->camera, &style, &caption))
-        return out_of_memory(error);
+    out_of_memory(error);
+    if (!begin_sheet(j, "") || !draw_mesh_panel(j, 0, mesh, &caption, error))
+        return j->opt.heat == HEAT_WEIGHTS ? CMD_ASSET : CMD_IO;
     return CMD_DONE;
 }
 
@@ -263,6 +360,11 @@ static int draw(job *j, asset_error *error)
     }
     if (j->list.count > 0) {
         asset_fail(error, "", "--faces is for .pmesh files of one mesh only");
+        return CMD_USAGE;
+    }
+    if (j->opt.heat == HEAT_ERROR) {
+        asset_fail(error, "", "--heat error is for .pmesh files of one mesh "
+                              "only");
         return CMD_USAGE;
     }
     asset mesh;
@@ -286,6 +388,11 @@ static int run(job *j)
 
     if (!file_read(j->input, FILE_LIMIT, &j->data, &error)) {
         report_asset_error(input, &error);
+        return CMD_IO;
+    }
+    if (j->opt.guide &&
+        !file_read(j->opt.guide, FILE_LIMIT, &j->guide_data, &error)) {
+        report_asset_error(file_input_name(j->opt.guide), &error);
         return CMD_IO;
     }
     if (!file_check_output(j->opt.output, true, &j->data, &error)) {
@@ -327,9 +434,15 @@ int cmd_sheet(int argc, char **argv)
                       j.opt.faces);
         return CMD_USAGE;
     }
+    if (j.opt.camera && !j.opt.guide) {
+        args_complain(&command, "--camera is one of --guide");
+        return CMD_USAGE;
+    }
     j.input = argv[0];
     const int code = run(&j);
     file_free(&j.data);
+    file_free(&j.guide_data);
+    asset_free(&j.finest);
     sheet_free(&j.sheet);
     return code;
 }

@@ -219,6 +219,7 @@ static bool copy_all(merge *g)
     }
     if (g->out->face_count == 0)
         return asset_fail(g->error, "", "the scene has no triangles");
+    g->out->texcoords_down = true;
     for (size_t i = 0; i < g->out->attribute_count; i++)
         g->out->attributes[i].count = g->out->vertex_count;
     return true;

@@ -53,9 +53,12 @@ static bool reserve(maker *m, uint64_t faces, uint64_t vertices,
             .kind = c->kind, .set = c->number, .components = c->components,
             .bits = c->bits, .values = values
         };
+        snprintf(out->attributes[i].name, sizeof out->attributes[i].name, "%s",
+                 c->set == 0 ? c->semantic : "");
         ok = ok && values;
     }
     out->attribute_count = m->channels->count;
+    out->texcoords_down = true;
     ok = ok && out->positions && out->indices && out->materials && m->map &&
          m->stamp;
     return ok || asset_fail(m->error, "", "out of memory");

@@ -439,8 +439,11 @@ static bool read_all(ply_reader *ply, asset *out, asset_error *error)
         return false;
     for (int i = 0; i < PLY_CHANNELS; i++) {
         ply_channel *c = &ply->channels[i];
-        if (c->values.count)
-            builder_attach(out, c->kind, c->components, &c->values, NULL);
+        if (!c->values.count)
+            continue;
+        builder_attach(out, c->kind, c->components, &c->values, NULL);
+        if (c->kind == PMESH_GENERIC)
+            strcpy(out->attributes[out->attribute_count - 1].name, "quality");
     }
     return true;
 }

@@ -180,7 +180,7 @@ typedef struct target {
 
 typedef struct corner {
     int64_t x, y; /* SUBSTEPS per sample, y down */
-    double z, light;
+    double z, light, heat;
 } corner;
 
 typedef struct triangle {
@@ -189,6 +189,7 @@ typedef struct triangle {
     double wire;       /* 0 .. 1 */
     double reach[3];   /* edge function of WIRE_WIDTH, per edge */
     bool inside;       /* seen from behind */
+    bool warm;         /* its corners have heat */
 } triangle;
 
 static int64_t side_of(const corner *a, const corner *b, int64_t x, int64_t y)
@@ -247,6 +248,9 @@ static bool set_up(const scene *s, size_t face, const raster_style *style,
     normalize(n);
     for (size_t k = 0; k < 3; k++)
         t->corners[k].light = light_of(s, v[k], n, style->flat, t->inside);
+    t->warm = style->heat && (style->plain == 0 || face < style->plain);
+    for (size_t k = 0; k < 3; k++)
+        t->corners[k].heat = t->warm ? (double)style->heat[v[k]] : 0;
     if (t->area2 < 0) {
         const corner c = t->corners[1];
         t->corners[1] = t->corners[2];
@@ -259,14 +263,26 @@ static bool set_up(const scene *s, size_t face, const raster_style *style,
     return true;
 }
 
-static uint32_t color_at(const triangle *t, const int64_t w[3], double light)
+/* b1 and b2: the shares of corners 1 and 2. */
+static double mix(double c0, double c1, double c2, double b1, double b2)
 {
+    return c0 + b1 * (c1 - c0) + b2 * (c2 - c0);
+}
+
+static uint32_t color_at(const triangle *t, const int64_t w[3], double b1,
+                         double b2)
+{
+    const corner *c = t->corners;
+    const double light = mix(c[0].light, c[1].light, c[2].light, b1, b2);
     double wire = 0;
     if (t->wire > 0)
         for (size_t i = 0; i < 3; i++)
             if ((double)w[i] < t->reach[i])
                 wire = t->wire;
-    return shade_color(light, t->inside, wire);
+    return t->warm
+               ? shade_warm(light, mix(c[0].heat, c[1].heat, c[2].heat, b1, b2),
+                            wire)
+               : shade_color(light, t->inside, wire);
 }
 
 /* w[i] is the edge function opposite of corner i: their sum is the area. */
@@ -276,14 +292,11 @@ static void fill_sample(const target *to, const triangle *t, size_t at,
     const corner *c = t->corners;
     const double b1 = (double)w[1] / (double)t->area2;
     const double b2 = (double)w[2] / (double)t->area2;
-    const float z = (float)(c[0].z + b1 * (c[1].z - c[0].z) +
-                            b2 * (c[2].z - c[0].z));
+    const float z = (float)mix(c[0].z, c[1].z, c[2].z, b1, b2);
     if (z <= to->depth[at])
         return;
     to->depth[at] = z;
-    to->color[at] = color_at(t, w,
-                             c[0].light + b1 * (c[1].light - c[0].light) +
-                                 b2 * (c[2].light - c[0].light));
+    to->color[at] = color_at(t, w, b1, b2);
 }
 
 /* The first sample of a row whose centre is at or behind v. */

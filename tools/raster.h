@@ -26,6 +26,9 @@ typedef struct raster_camera {
 typedef struct raster_style {
     bool wire;
     bool flat; /* one shade per face; else smooth where the surface is */
+    const float *heat; /* per vertex: 0 .. 1 from blue to red; or NULL */
+    size_t plain;      /* with heat: faces from this number on have none; 0:
+                          all have it */
 } raster_style;
 
 /*

@@ -224,6 +224,23 @@ bool has_looks(const gltf_json &in)
     return false;
 }
 
+/* Whether some primitive has an attribute of its author's own. */
+bool has_own_attributes(const gltf_json &in)
+{
+    if (!is_list(in, "meshes", 1))
+        return false;
+    for (const gltf_json &mesh : in["meshes"]) {
+        if (!mesh.is_object() || !is_list(mesh, "primitives", 1))
+            continue;
+        for (const gltf_json &p : mesh["primitives"])
+            if (p.is_object() && p.contains("attributes"))
+                for (const auto &item : p["attributes"].items())
+                    if (item.key()[0] == '_')
+                        return true;
+    }
+    return false;
+}
+
 } // namespace
 
 bool scene_is_worth_it(const uint8_t *data, size_t size)
@@ -244,7 +261,7 @@ bool scene_is_worth_it(const uint8_t *data, size_t size)
                 return true;
         return is_list(in, "meshes", 2) || is_list(in, "scenes", 2) ||
                is_list(in, "nodes", 2) || in.contains("extensions") ||
-               has_looks(in);
+               has_looks(in) || has_own_attributes(in);
     } catch (...) {
         return false;
     }

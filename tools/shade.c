@@ -43,3 +43,41 @@ uint32_t shade_color(double light, bool inside, double wire)
     }
     return color;
 }
+
+static const unsigned char ramp[5][3] = {
+    { 44, 62, 150 }, { 44, 150, 190 }, { 92, 182, 92 }, { 238, 206, 72 },
+    { 206, 48, 40 }
+};
+
+static void warm(double t, double out[3])
+{
+    const double at = 4 * fmax(0, fmin(1, t));
+    const unsigned low = at >= 3 ? 3 : (unsigned)at;
+
+    for (unsigned k = 0; k < 3; k++)
+        out[k] = ramp[low][k] + (at - low) * (ramp[low + 1][k] - ramp[low][k]);
+}
+
+uint32_t shade_heat(double t)
+{
+    double c[3];
+
+    warm(t, c);
+    return (uint32_t)(c[0] + 0.5) << 16 | (uint32_t)(c[1] + 0.5) << 8 |
+           (uint32_t)(c[2] + 0.5);
+}
+
+/* Colours keep their hue in the shade, for they are read off a scale. */
+uint32_t shade_warm(double light, double t, double wire)
+{
+    const double dim = 0.45 + 0.55 * fmax(0, fmin(1, light));
+    uint32_t color = 0;
+    double c[3];
+
+    warm(t, c);
+    for (unsigned k = 0; k < 3; k++) {
+        const double lit = dim * c[k];
+        color = color << 8 | (uint32_t)(lit + wire * (ink[k] - lit) + 0.5);
+    }
+    return color;
+}

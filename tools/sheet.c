@@ -2,6 +2,7 @@
 #include "tools/sheet.h"
 
 #include "tools/font.h"
+#include "tools/shade.h"
 
 #define EDGE 28u      /* around everything */
 #define GAP 18u       /* between panels */
@@ -47,6 +48,21 @@ bool sheet_begin(sheet *out, uint32_t count, uint32_t columns, uint32_t panel,
     return true;
 }
 
+/* A strip of the colours with what its ends stand for, in the upper left. */
+static void draw_scale(picture *p, uint32_t x, uint32_t y,
+                       const sheet_caption *caption)
+{
+    enum { LENGTH = 72, THICKNESS = 6 };
+
+    for (uint32_t i = 0; i < LENGTH; i++)
+        for (uint32_t j = 0; j < THICKNESS; j++)
+            picture_blend(p, x + i, y + j,
+                          shade_heat((i + 0.5) / LENGTH), 255);
+    font_draw(p, x, y + THICKNESS + 14, caption->blue, &detail_style);
+    font_draw(p, x + LENGTH - font_width(caption->red, &detail_style) / 2,
+              y + THICKNESS + 14, caption->red, &detail_style);
+}
+
 bool sheet_draw(sheet *s, uint32_t index, const asset *mesh,
                 const raster_camera *camera, const raster_style *style,
                 const sheet_caption *caption)
@@ -62,8 +78,11 @@ bool sheet_draw(sheet *s, uint32_t index, const asset *mesh,
     draw_line(&s->picture, x + INSET, y + s->panel + 42, text_width,
               caption->left_below, &detail_style, caption->right_below,
               &detail_style);
-    return raster_draw(&s->picture, x + PADDING, y + PADDING,
-                       s->panel - 2 * PADDING, mesh, camera, style);
+    const bool drawn = raster_draw(&s->picture, x + PADDING, y + PADDING,
+                                   s->panel - 2 * PADDING, mesh, camera, style);
+    if (caption->red[0])
+        draw_scale(&s->picture, x + INSET, y + INSET, caption);
+    return drawn;
 }
 
 void sheet_free(sheet *s)

@@ -28,6 +28,7 @@ typedef struct sheet {
 typedef struct sheet_caption {
     char left[64], right[64];             /* the first line, heavier */
     char left_below[64], right_below[64]; /* the second one */
+    char blue[24], red[24]; /* the ends of the scale of heat; empty: none */
 } sheet_caption;
 
 /* A sheet for `count` panels; false when memory is out. */

@@ -11,10 +11,11 @@ for option in help -h --help; do
     check "pmesh $option" 0 $option
     ok "pmesh $option prints on stdout only" silent
 done
-for command in bake extract simplify info verify compare sheet sample; do
+for command in bake extract simplify info verify compare guide sheet \
+    plot stats sample; do
     ok "the overview lists $command" out "^  $command "
 done
-for command in bake extract simplify info verify; do
+for command in bake extract simplify info verify guide plot stats; do
     check "$command -h" 0 $command -h
     ok "$command -h lists its options" out '^Options:'
     short=$(size "$work/out")

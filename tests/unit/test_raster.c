@@ -10,6 +10,7 @@
 #include "tools/digits.h"
 #include "tools/font.h"
 #include "tools/sample.h"
+#include "tools/shade.h"
 #include "tools/topology.h"
 #include "tools/trig.h"
 
@@ -346,4 +347,42 @@ TEST(sample_has_normals_and_a_texture_seam)
     for (size_t i = 0; i < 2 * texture->count; i++)
         CHECK(texture->values[i] >= 0 && texture->values[i] <= 1);
     asset_free(&mesh);
+}
+
+/* Half of the wedge's face is hot, and only its first face has heat. */
+TEST(raster_mixes_heat_over_a_face)
+{
+    double positions[18];
+    uint32_t indices[6];
+    const float values[6] = { 0, 1, 1, 1, 1, 1 };
+    for (uint32_t i = 0; i < 6; i++)
+        indices[i] = i;
+    memcpy(positions, wedge_points, sizeof positions);
+    const asset mesh = { .positions = positions, .vertex_count = 6,
+                         .indices = indices, .face_count = 1 };
+    raster_style style = { .flat = true, .heat = values };
+    picture p = paper(64, 64);
+    CHECK(raster_draw(&p, 0, 0, 64, &mesh, &front, &style));
+    const uint32_t cold = pixel(&p, 18, 46), hot = pixel(&p, 46, 30);
+    CHECK((cold & 0xFF) > (cold >> 16)); /* blue */
+    CHECK((hot >> 16) > (hot & 0xFF));   /* red */
+    picture_free(&p);
+
+    const asset both = { .positions = positions, .vertex_count = 6,
+                         .indices = indices, .face_count = 2 };
+    picture plain = paper(64, 64), half = paper(64, 64);
+    const raster_style none = { .flat = true };
+    style.plain = 1; /* the second face, in front, has none */
+    CHECK(raster_draw(&plain, 0, 0, 64, &both, &front, &none));
+    CHECK(raster_draw(&half, 0, 0, 64, &both, &front, &style));
+    CHECK(pixel(&plain, 30, 33) == pixel(&half, 30, 33));
+    picture_free(&plain);
+    picture_free(&half);
+}
+
+TEST(shade_heat_runs_from_blue_to_red)
+{
+    CHECK(shade_heat(0) == 0x2C3E96u && shade_heat(-1) == shade_heat(0));
+    CHECK(shade_heat(1) == 0xCE3028u && shade_heat(2) == shade_heat(1));
+    CHECK(shade_heat(0.5) == 0x5CB65Cu);
 }

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * guide_store.h - private to the guide's files: what a guide owns, and how its
+ * vertices are found. Functions throw std::runtime_error.
+ */
+#ifndef GUIDE_STORE_H
+#define GUIDE_STORE_H
+
+#include <cstdint>
+#include <list>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/guide.h"
+
+using guide_json = nlohmann::json;
+
+struct guide_store {
+    std::vector<float> weights;
+    std::vector<uint8_t> locks;
+    std::vector<uint16_t> segments;
+    std::vector<double> shares;
+    std::list<std::vector<uint32_t>> lists; /* of the constraints */
+    std::vector<pmesh_constraint> constraints;
+    std::list<std::string> names;
+    std::vector<guide_camera> cameras;
+    std::string warning;
+
+    /* Lets guide->use point to what is there. */
+    void publish(guide *out) const;
+};
+
+/* Points sorted along their widest axis, to look for the nearest. */
+class guide_points {
+public:
+    guide_points(const double *from, size_t many) : xyz(from), count(many) {}
+
+    /* Of equally near ones the first; UINT32_MAX if there is none. */
+    uint32_t nearest(const double p[3]) const;
+
+private:
+    const double *xyz;
+    size_t count;
+    mutable size_t axis = 0;
+    mutable std::vector<uint32_t> order; /* made when first needed */
+
+    void sort() const;
+};
+
+/* Turns what a guide file says of vertices into vertices of the mesh. */
+class guide_finder {
+public:
+    /* `source`: the file's member of that name, null if it has none. */
+    guide_finder(const asset *mesh, const guide_json &source);
+
+    /* The vertices of a "vertices", "positions", "box", "sphere", or "all"
+     * member, in the order given, and how much of a brush's strength each gets
+     * (1 but for spheres with a falloff). */
+    std::vector<uint32_t> find(const guide_json &item, const std::string &where,
+                               std::vector<double> *strength = nullptr) const;
+
+    /* One number for each vertex of the guide's mesh, for those of this one. */
+    std::vector<float> spread(const std::vector<float> &values) const;
+
+    bool is_other() const { return other; }
+    size_t count() const { return other ? theirs.size() / 3 : mesh->vertex_count; }
+
+private:
+    const asset *mesh;
+    guide_points points;
+    bool other = false;         /* made for another mesh */
+    std::vector<double> theirs; /* its places */
+
+    uint32_t vertex(const guide_json &number, const std::string &where) const;
+};
+
+/* A finite number, or complains. */
+double guide_number(const guide_json &value, const std::string &where);
+
+[[noreturn]] void guide_fail(const std::string &where, const std::string &what);
+
+#endif
