@@ -228,7 +228,8 @@ cross-deps:
 	@tests/install-deps.sh cross
 
 headers := format/pmesh.h encoder/pmesh_encode.h encoder/pmesh_guide.h \
-  encoder/pmesh_inspect.h encoder/pmesh_simplify.h \
+  encoder/pmesh_inspect.h encoder/pmesh_session.h \
+  encoder/pmesh_simplify.h \
   encoder/pmesh_scene_encode.h decoder/pmesh_decode.h decoder/pmesh_plan.h \
   decoder/pmesh_scene.h
 lib := $(DESTDIR)$(LIBDIR)

@@ -294,17 +294,16 @@ static pmesh_status code_connectivity(base *b)
 
 static void add_neighbour(pmesh_codec *c, uint32_t v, uint32_t x)
 {
-    c->degree[v]++;
+    c->near[v].degree++;
     for (int k = 0; k < 3; k++)
-        c->around[v][k] += (uint32_t)c->mesh.position[x][k];
+        c->near[v].sum[k] += (uint32_t)c->mesh.position[x][k];
 }
 
 /* Neighbours: one per face, and one more at a boundary. */
 static void count_neighbours(pmesh_codec *c)
 {
     const pmesh_mesh *m = &c->mesh;
-    memset(c->degree, 0, m->vertex_count * sizeof *c->degree);
-    memset(c->around, 0, m->vertex_count * sizeof *c->around);
+    memset(c->near, 0, m->vertex_count * sizeof *c->near);
     for (uint32_t h = 0; h < 3 * m->face_count; h++) {
         const uint32_t v = m->vertex[h], x = m->vertex[pmesh_next(h)];
         add_neighbour(c, v, x);

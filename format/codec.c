@@ -59,8 +59,7 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     c->sizes = *s;
     c->order = carve(&k, rows_of(s), sizeof *c->order);
     c->state = carve(&k, s->vertices, sizeof *c->state);
-    c->degree = carve(&k, s->vertices, sizeof *c->degree);
-    c->around = carve(&k, s->vertices, sizeof *c->around);
+    c->near = carve(&k, s->vertices, sizeof *c->near);
     c->face_end = carve(&k, s->vertices, sizeof *c->face_end);
     c->wedge_end = NULL;
     c->wedge_corner = c->wedge_order = NULL;

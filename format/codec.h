@@ -18,19 +18,20 @@
 #define PMESH_CODEC_H
 
 #include "format/coder.h"
+#include "format/lanes.h"
 #include "format/mesh.h"
 #include "format/models.h"
 
 /* Visit state of a vertex within a level. */
 typedef enum pmesh_visit {
     PMESH_UNVISITED = 0,
-    PMESH_KEPT = 1,     /* visited, does not split */
-    PMESH_PARENT = 2,   /* visited, has split */
-    PMESH_NEWBORN = 3,  /* made by a split of this level */
-    PMESH_GHOST = 4     /* what lies across a boundary */
+    PMESH_KEPT = 1,    /* visited, does not split */
+    PMESH_PARENT = 2,  /* visited, has split */
+    PMESH_NEWBORN = 3, /* made by a split of this level */
+    PMESH_GHOST = 4    /* what lies across a boundary */
 } pmesh_visit;
 
-typedef struct pmesh_fans pmesh_fans;       /* see join.h */
+typedef struct pmesh_fans pmesh_fans; /* see join.h */
 typedef struct pmesh_parting pmesh_parting;
 
 /*
@@ -96,25 +97,45 @@ static inline uint64_t pmesh_block_faces(const pmesh_codec_sizes *s)
     return s->joined ? s->block_faces : 2 * (uint64_t)s->block_splits;
 }
 
+/* The neighbours of a vertex: their number, and the sum of their positions,
+ * modulo 2^32. One record, for they are wanted together. */
+typedef struct pmesh_near {
+    uint32_t sum[3];
+    uint32_t degree;
+} pmesh_near;
+
+/* The same as four numbers. */
+static inline quads pmesh_near_load(const pmesh_near *near)
+{
+    int32_t all[QUADS];
+    memcpy(all, near, sizeof all);
+    return quads_load(all);
+}
+
+static inline void pmesh_near_store(pmesh_near *near, quads all)
+{
+    int32_t to[QUADS];
+    quads_store(to, all);
+    memcpy(near, to, sizeof to);
+}
+
 typedef struct pmesh_codec {
     pmesh_codec_sizes sizes;
     pmesh_mesh mesh;
     pmesh_models models;
     int32_t bounds[3]; /* largest coordinate of each axis */
     uint32_t component_max[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS];
-    const char *rule; /* what a negative status was about */
+    const char *rule;      /* what a negative status was about */
     uint64_t part_size[3]; /* when encoding, bytes so far: connectivity,
                               positions, attributes */
 
     /* Of the level. */
-    uint32_t *order;  /* per vertex: the visit's order */
-    uint8_t *state;   /* per vertex: pmesh_visit */
+    uint32_t *order; /* per vertex: the visit's order */
+    uint8_t *state;  /* per vertex: pmesh_visit */
     uint32_t level_vertex_count, level_next;
 
     /* Of the mesh as it is. */
-    uint32_t *degree;      /* per vertex: neighbours */
-    uint32_t (*around)[3]; /* per vertex: sum of its neighbours' positions,
-                              modulo 2^32 */
+    pmesh_near *near; /* per vertex */
 
     /* Of the vertex tree: what there is once a vertex is split off. */
     uint32_t *face_end;  /* per vertex */
@@ -124,23 +145,25 @@ typedef struct pmesh_codec {
 
     /* Of the block; while it is coded its numbers are in coding order. */
     pmesh_block block;
-    int32_t (*unsplit)[3];  /* per split, if parents move: where the parent was */
-    uint32_t *child_face;   /* per split: its first new face */
-    uint32_t *importance;   /* per split */
+    int32_t (
+        *unsplit)[3];     /* per split, if parents move: where the parent was */
+    uint32_t *child_face; /* per split: its first new face */
+    uint32_t *importance; /* per split */
     uint32_t *child_order;  /* per split, afterwards: its place in coding
                                order */
     uint32_t *face_order;   /* per face of the block, likewise */
     uint32_t *wedge_order;  /* per wedge of the block, likewise */
     uint32_t *wedge_corner; /* per wedge: the half-edge it was made for */
-    uint32_t *scratch;      /* see rank.c */
+    uint32_t *scratch;      /* see rank.c, level.c */
     void *cut_room;         /* see cut.c */
     uint32_t *base_scratch; /* pmesh_base_scratch() numbers, for the base */
 } pmesh_codec;
 
 /*
  * Lays the arrays out in `block` (aligned for any object, zeroed) and makes an
- * empty mesh and fresh models. Returns the bytes needed; with block NULL that is
- * all, and `c` is not usable. The sizes must be within the limits of layout.h.
+ * empty mesh and fresh models. Returns the bytes needed; with block NULL that
+ * is all, and `c` is not usable. The sizes must be within the limits of
+ * layout.h.
  */
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *sizes,
                           void *block);
@@ -186,8 +209,7 @@ void pmesh_level_begin(pmesh_codec *c);
  * what was appended. On a negative status the mesh is not usable any more.
  */
 pmesh_status pmesh_block_code(pmesh_codec *c, pmesh_coder *coder,
-                              const pmesh_oracle *oracle,
-                              uint32_t split_count);
+                              const pmesh_oracle *oracle, uint32_t split_count);
 
 /* The wedge that a new face's corner has when the face is born in the split of
  * `child`: vertices that split off later are still their parents then. */

@@ -3,22 +3,23 @@
 
 #include <string.h>
 
+#include "format/lanes.h"
 #include "format/star.h"
 
 enum {
-    LANES = 8, /* rows are padded to a multiple, for SIMD's sake */
     MAX_LANES = (PMESH_MAX_RING - 1) * PMESH_MAX_RING,
     MAX_ROWS = PMESH_MAX_RING + 1,
-    MEMBERS = 2 * PMESH_MAX_RING + LANES,
+    ROOM = PMESH_MAX_RING + LANES,
+    MEMBERS = 2 * PMESH_MAX_RING + 2 * LANES,
 
     LARGEST_BITS = 14, /* of the largest coordinate */
     DRIFT_LIMIT = 1 << 13,
     LEAST_SIZE = 513,
     TERM_LIMIT = 2047,  /* terms have 1/256 of the ring's size, squared */
     PLACE_LIMIT = 5000, /* of what makes up a cost besides, in 1/64 bit */
-    TAKEN = INT16_MAX,
+    TAKEN = INT16_MAX,  /* costs are below it by twice NO_SHARE at least */
 
-    SHARE_ONE = 1 << 15, /* of the cheapest option */
+    NO_SHARE = 64 * 16, /* so far above the least cost a share is 0 */
     ERROR_ONE = 4096,
     LEARN_SHAPE = 512, /* error x term / this changes a weight of the shape */
     LARGEST_PLACE = 1 << 26,
@@ -34,15 +35,13 @@ typedef struct row {
     uint32_t lane, live;
     uint32_t span;
     wing_set wings;
+    int32_t least; /* of the costs */
 } row;
 
 /* All rows, one behind the other; those with one wing last. */
 typedef struct options {
     uint32_t count, one_wing, row_count;
     struct row row[MAX_ROWS];
-    int16_t part[3][MAX_LANES]; /* sum of the members that u gets */
-    int16_t rest[3][MAX_LANES]; /* of those that v keeps, and the wings */
-    int16_t to_u[MAX_LANES], to_v[MAX_LANES]; /* 2^16 / size of both rings */
     int16_t term[PMESH_CUT_TERMS][MAX_LANES];
     int16_t cost[MAX_LANES]; /* 1/64 bit, up to a constant */
     uint16_t share[MAX_LANES];
@@ -56,15 +55,16 @@ typedef struct options {
 typedef struct cutter {
     uint32_t n;
     bool open;
-    unsigned drop;                  /* bits(n) */
-    int16_t x[3][MEMBERS];          /* without the last bits(n) bits */
-    int16_t sum[3][MEMBERS + 1];    /* of the members before, modulo 2^16 */
-    int16_t square[PMESH_MAX_RING]; /* of the whole coordinates, / 2^16 */
-    int16_t reach[PMESH_MAX_RING];  /* the terms of the squares */
-    int16_t per_size;               /* 2^24 / mean square */
-    int16_t far;                    /* squares up to this count */
-    int16_t drift[3];               /* mean displacement of newborn members, */
-    uint32_t newborn;               /* if there are any */
+    unsigned drop;         /* bits(n) */
+    int16_t x[3][MEMBERS]; /* without the last bits(n) bits */
+    int16_t all[3];        /* sum of the members, modulo 2^16, */
+    int16_t part[3][ROOM]; /* of those from lane i on that u gets in a row */
+    int16_t square[ROOM];  /* of the whole coordinates, / 2^16 */
+    int16_t reach[ROOM];   /* the terms of the squares */
+    int16_t per_size;      /* 2^24 / mean square */
+    int16_t far;           /* squares up to this count */
+    int16_t drift[3];      /* mean displacement of newborn members, */
+    uint32_t newborn;      /* if there are any */
     pmesh_cut_weights *weights;
     /* What a member costs as wing a, b: by its degree, by the states around,
      * and together with its reach. */
@@ -92,24 +92,12 @@ static int32_t within(int32_t value, int32_t limit)
     return value < -limit ? -limit : value > limit ? limit : value;
 }
 
+static uint32_t padded(uint32_t count)
+{
+    return (count + LANES - 1) / LANES * LANES;
+}
+
 /* ---- the ring ------------------------------------------------------------ */
-
-static int32_t scaled(int32_t value, int shift)
-{
-    return shift >= 0 ? value * (1 << shift) : value >> -shift;
-}
-
-static int16_t square_of(int16_t y)
-{
-    return (int16_t)(y * y >> 16);
-}
-
-/* `far` is such that terms are at most TERM_LIMIT. */
-static int16_t term_of(int16_t square, int16_t far, int16_t per_size)
-{
-    const int16_t near = square < far ? square : far;
-    return (int16_t)(near * per_size >> 16);
-}
 
 static void place_drift(cutter *s, const int64_t drift[3], int shift)
 {
@@ -122,99 +110,157 @@ static void place_drift(cutter *s, const int64_t drift[3], int shift)
     }
 }
 
-static void place_points(cutter *s, const pmesh_codec *c, uint32_t v,
-                         const pmesh_ring *ring)
+/* The members relative to v, then zeros; returns the bitwise or of all sizes.
+ */
+static uint32_t gather(cutter *s, const pmesh_codec *c, uint32_t v,
+                       const pmesh_ring *ring, quads d[ROOM], int64_t drift[3])
 {
     const int32_t(*position)[3] = (const int32_t(*)[3])c->mesh.position;
-    int32_t d[PMESH_MAX_RING][3];
-    int64_t drift[3] = { 0, 0, 0 };
-    uint32_t all = 0;
+    const quads from = quads_triple(position[v]);
+    quads all = quads_of(0);
     s->newborn = 0;
     for (uint32_t i = 0; i < s->n; i++) {
         const uint32_t x = ring->vertex[i];
-        for (int k = 0; k < 3; k++) {
-            d[i][k] = position[x][k] - position[v][k];
-            all |= (uint32_t)(d[i][k] < 0 ? -d[i][k] : d[i][k]);
-        }
+        d[i] = quads_sub(quads_triple(position[x]), from);
+        all = quads_or(all, quads_size(d[i]));
         if (c->state[x] != PMESH_NEWBORN)
             continue;
         for (int k = 0; k < 3; k++)
             drift[k] += position[x][k] - position[c->mesh.parent[x]][k];
         s->newborn++;
     }
-    const int shift = LARGEST_BITS - (int)pmesh_bit_length(all);
-    for (uint32_t i = 0; i < s->n; i++) {
-        s->square[i] = 0;
-        for (int k = 0; k < 3; k++) {
-            const int16_t y = (int16_t)scaled(d[i][k], shift);
-            s->x[k][i] = (int16_t)(y >> s->drop);
-            s->square[i] = (int16_t)(s->square[i] + square_of(y));
-        }
+    for (uint32_t i = s->n; i < padded(s->n); i++)
+        d[i] = quads_of(0);
+    return quads_any(all);
+}
+
+/* LANES members. */
+static void place_lanes(cutter *s, uint32_t at, const quads d[LANES], int up,
+                        int down)
+{
+    quads scaled[LANES];
+    lanes y[3], square = lanes_of(0);
+    for (int i = 0; i < LANES; i++)
+        scaled[i] = quads_right(quads_left(d[i], up), down);
+    lanes_columns(scaled, y);
+    for (int k = 0; k < 3; k++) {
+        const lanes x = lanes_right(y[k], (int)s->drop);
+        lanes_store(s->x[k] + at, x);
+        lanes_store(s->part[k] + at, x);
+        square = lanes_add(square, lanes_high(y[k], y[k]));
+        s->all[k] = (int16_t)(s->all[k] + lanes_total(x));
     }
+    lanes_store(s->square + at, square);
+}
+
+/* What is kept of n members comes again, or zeros. */
+static void go_around(const cutter *s, int16_t *x)
+{
+    const uint32_t n = s->n, end = 2 * n + LANES;
+    const uint32_t step = n < LANES ? n : LANES;
+    if (s->open) {
+        lanes_store(x + n, lanes_of(0));
+        return;
+    }
+    for (uint32_t i = n; i < end; i += step)
+        lanes_store(x + i, lanes_load(x + i - n));
+}
+
+static void place_points(cutter *s, const pmesh_codec *c, uint32_t v,
+                         const pmesh_ring *ring)
+{
+    quads d[ROOM];
+    int64_t drift[3] = { 0, 0, 0 };
+    const uint32_t all = gather(s, c, v, ring, d, drift);
+    const int shift = LARGEST_BITS - (int)pmesh_bit_length(all);
+    const int up = shift > 0 ? shift : 0, down = up - shift;
+    memset(s->all, 0, sizeof s->all);
+    for (uint32_t i = 0; i < s->n; i += LANES)
+        place_lanes(s, i, d + i, up, down);
+    for (int k = 0; k < 3; k++)
+        go_around(s, s->x[k]);
     memset(s->drift, 0, sizeof s->drift);
     if (s->newborn)
         place_drift(s, drift, shift);
 }
 
-static void sum_up(cutter *s)
+/* min(square, far) x per_size / 2^16 */
+static lanes terms_of(lanes square, lanes far, lanes per_size)
 {
-    const uint32_t n = s->n, end = (s->open ? n : 2 * n) + LANES;
-    int32_t size = 0;
-    for (uint32_t i = 0; i < n; i++)
-        size += s->square[i];
-    size /= (int32_t)n;
+    return lanes_high(lanes_min(square, far), per_size);
+}
+
+static void measure(cutter *s)
+{
+    const uint32_t count = padded(s->n);
+    quads sum = quads_of(0);
+    for (uint32_t i = 0; i < count; i += LANES)
+        sum = quads_add(sum, quads_dot(lanes_load(s->square + i), lanes_of(1)));
+    const int32_t size = quads_total(sum) / (int32_t)s->n;
     const int32_t per = (1 << 24) / (size > LEAST_SIZE ? size : LEAST_SIZE);
     const int32_t far = (TERM_LIMIT << 16) / per;
     s->per_size = (int16_t)per;
     s->far = (int16_t)(far < INT16_MAX ? far : INT16_MAX);
-    for (uint32_t i = 0; i < n; i++)
-        s->reach[i] = term_of(s->square[i], s->far, s->per_size);
-    for (int k = 0; k < 3; k++) {
-        int16_t *x = s->x[k], *sum = s->sum[k];
-        uint16_t so_far = 0;
-        for (uint32_t i = n; i < end; i++)
-            x[i] = s->open ? 0 : x[i - n];
-        for (uint32_t i = 0; i < end; i++) {
-            sum[i] = (int16_t)so_far;
-            so_far = (uint16_t)(so_far + (uint16_t)x[i]);
-        }
-        sum[end] = (int16_t)so_far;
-    }
+    for (uint32_t i = 0; i < count; i += LANES)
+        lanes_store(s->reach + i,
+                    terms_of(lanes_load(s->square + i), lanes_of(s->far),
+                             lanes_of(s->per_size)));
 }
 
 /* What the states of three consecutive members and the degree of the middle
  * one say about a wing there; a ghost lies before the first and behind the
  * last member of an open ring. */
-static void weigh_wings(cutter *s, const pmesh_codec *c, const pmesh_ring *ring)
+static void look_up_wings(cutter *s, const pmesh_codec *c,
+                          const pmesh_ring *ring, int32_t sum[2][ROOM])
 {
     pmesh_cut_weights *w = s->weights;
     const uint32_t n = s->n;
-    const int32_t reach = w->reach[s->open][s->newborn > 0] >> 4;
-    uint8_t state[PMESH_MAX_RING + 2];
-    for (uint32_t i = 0; i < n; i++)
-        state[i + 1] = c->state[ring->vertex[i]];
-    state[0] = s->open ? PMESH_GHOST : state[n];
-    state[n + 1] = s->open ? PMESH_GHOST : state[1];
+    const uint32_t ghost = PMESH_GHOST;
+    uint32_t before = s->open ? ghost : c->state[ring->vertex[n - 1]];
+    uint32_t here = c->state[ring->vertex[0]];
+    const uint32_t after = s->open ? ghost : here;
     for (uint32_t i = 0; i < n; i++) {
-        const uint32_t many = c->degree[ring->vertex[i]];
+        const uint32_t many = c->near[ring->vertex[i]].degree;
         const uint32_t degree =
             many < PMESH_CUT_DEGREES ? many : PMESH_CUT_DEGREES - 1;
-        const uint8_t *at = &state[i];
+        const uint32_t behind =
+            i + 1 < n ? c->state[ring->vertex[i + 1]] : after;
         s->degree[0][i] = &w->degree[0][degree];
         s->degree[1][i] = &w->degree[1][degree];
-        s->state[0][i] = &w->state[0][at[0]][at[1]][at[2]];
-        s->state[1][i] = &w->state[1][at[2]][at[1]][at[0]];
+        s->state[0][i] = &w->state[0][before][here][behind];
+        s->state[1][i] = &w->state[1][behind][here][before];
         for (int side = 0; side < 2; side++)
-            s->wing[side][i] =
-                (int16_t)within((reach * s->reach[i] + *s->degree[side][i] +
-                                 *s->state[side][i]) >>
-                                    10,
-                                PLACE_LIMIT);
+            sum[side][i] = *s->degree[side][i] + *s->state[side][i];
+        before = here;
+        here = behind;
     }
-    const uint32_t end = (s->open ? n : 2 * n) + LANES;
-    for (uint32_t i = n; i < end; i++)
-        for (int side = 0; side < 2; side++)
-            s->wing[side][i] = s->open ? 0 : s->wing[side][i - n];
+}
+
+static void weigh_wings(cutter *s, const pmesh_codec *c, const pmesh_ring *ring)
+{
+    int32_t sum[2][ROOM];
+    const uint32_t count = padded(s->n);
+    const lanes none = lanes_of(0),
+                by = lanes_of(
+                    (int16_t)(s->weights->reach[s->open][s->newborn > 0] >> 4));
+    look_up_wings(s, c, ring, sum);
+    for (int side = 0; side < 2; side++) {
+        for (uint32_t i = s->n; i < count; i++)
+            sum[side][i] = 0;
+        for (uint32_t i = 0; i < count; i += LANES) {
+            const lanes reach = lanes_load(s->reach + i);
+            const quads first = quads_add(quads_first(by, none, reach, none),
+                                          quads_load(sum[side] + i));
+            const quads last = quads_add(quads_last(by, none, reach, none),
+                                         quads_load(sum[side] + i + QUADS));
+            lanes wing =
+                lanes_within(quads_right(first, 10), quads_right(last, 10));
+            wing = lanes_max(wing, lanes_of(-PLACE_LIMIT));
+            lanes_store(s->wing[side] + i,
+                        lanes_min(wing, lanes_of(PLACE_LIMIT)));
+        }
+        go_around(s, s->wing[side]);
+    }
 }
 
 /* ---- options and their costs ----------------------------------------------
@@ -238,142 +284,171 @@ static int32_t *shape_weights(const cutter *s, bool ghost)
     return s->weights->shape[ghost ? 2 : s->open][s->newborn > 0];
 }
 
-static uint32_t padded(uint32_t count)
+/* What many options have in common. */
+typedef struct common {
+    lanes to_u, to_v; /* 2^16 / size of both rings */
+    lanes place;      /* what the span costs */
+    lanes drift[3], all[3];
+    lanes shape[PMESH_CUT_TERMS];
+    lanes per_size, far, farther;
+    int drop;
+} common;
+
+static void make_common(const cutter *s, bool ghost, common *o)
 {
-    return (count + LANES - 1) / LANES * LANES;
+    const int32_t *weight = shape_weights(s, ghost);
+    for (int t = 0; t < PMESH_CUT_TERMS; t++)
+        o->shape[t] = lanes_of((int16_t)(weight[t] >> 2));
+    for (int k = 0; k < 3; k++) {
+        o->drift[k] = lanes_of(s->drift[k]);
+        o->all[k] = lanes_of(s->all[k]);
+    }
+    o->per_size = lanes_of(s->per_size);
+    o->far = lanes_of(s->far);
+    o->farther = lanes_of(s->newborn ? s->far : 0);
+    o->drop = (int)s->drop;
+}
+
+/* Of options, up to their third axis: squares of v's way off the centre of its
+ * ring, where u is at the mean of its own, and of u's way off its newborn
+ * neighbours' displacement. */
+typedef struct squares {
+    lanes off, stray;
+} squares;
+
+/* One axis: u gets `part`, v keeps what is left of all, and the wings. */
+static inline void add_axis(const common *o, int k, lanes part, lanes wings,
+                            squares *q)
+{
+    const lanes mean = lanes_high(part, o->to_u);
+    const lanes rest =
+        lanes_add(lanes_sub(o->all[k], part), lanes_add(wings, mean));
+    const lanes v = lanes_left(lanes_high(rest, o->to_v), o->drop);
+    const lanes u = lanes_left(lanes_sub(mean, o->drift[k]), o->drop);
+    q->off = lanes_add(q->off, lanes_high(v, v));
+    q->stray = lanes_add(q->stray, lanes_high(u, u));
+}
+
+/* The terms go to the list, costs are returned; `wings` is what those cost. */
+static inline lanes weigh_shape(options *list, const common *o, uint32_t lane,
+                                squares q, lanes wings)
+{
+    const lanes off = terms_of(q.off, o->far, o->per_size);
+    const lanes stray = terms_of(q.stray, o->farther, o->per_size);
+    lanes_store(list->term[0] + lane, off);
+    lanes_store(list->term[1] + lane, stray);
+    return lanes_add(lanes_add(o->place, wings),
+                     lanes_add(lanes_high(lanes_left(off, 4), o->shape[0]),
+                               lanes_high(lanes_left(stray, 4), o->shape[1])));
+}
+
+/* In a row's first `live` lanes nothing, in the others TAKEN. */
+#define X8(x)  x, x, x, x, x, x, x, x
+#define X24(x) X8(x), X8(x), X8(x)
+static const int16_t barrier[] = { X24(INT16_MIN), X24(INT16_MIN), X24(TAKEN),
+                                   X24(TAKEN) };
+
+/* LANES options of a span, from first wing `at` on: u gets another member, its
+ * wing b. */
+static inline lanes weigh_lanes(cutter *s, const common *o, const row *r,
+                                uint32_t at)
+{
+    squares q = { lanes_of(0), lanes_of(0) };
+    for (int k = 0; k < 3; k++) {
+        const lanes a = lanes_load(s->x[k] + at);
+        const lanes b = lanes_load(s->x[k] + at + r->span);
+        const lanes part = lanes_add(lanes_load(s->part[k] + at), b);
+        lanes_store(s->part[k] + at, part);
+        add_axis(o, k, part, lanes_add(a, b), &q);
+    }
+    const lanes wings = lanes_add(lanes_load(s->wing[0] + at),
+                                  lanes_load(s->wing[1] + at + r->span));
+    const lanes cost =
+        lanes_max(weigh_shape(s->list, o, r->lane + at, q, wings),
+                  lanes_load(barrier + PMESH_MAX_RING - r->live + at));
+    lanes_store(s->list->cost + r->lane + at, cost);
+    return cost;
+}
+
+static int32_t least_of(const int16_t *cost, uint32_t count)
+{
+    lanes least = lanes_load(cost);
+    for (uint32_t i = LANES; i < count; i += LANES)
+        least = lanes_min(least, lanes_load(cost + i));
+    return lanes_least(least);
 }
 
 static row *add_row(options *list, wing_set wings, uint32_t span, uint32_t live)
 {
     row *r = &list->row[list->row_count++];
-    *r = (row){ list->count, live, span, wings };
+    *r = (row){ list->count, live, span, wings, TAKEN };
     list->count += padded(live);
     return r;
 }
 
-static void add_inner(cutter *s, uint32_t span, uint32_t live)
+static void add_inner(cutter *s, common *o, uint32_t span, uint32_t live)
 {
-    options *list = s->list;
-    const row *r = add_row(list, BOTH, span, live);
-    const uint32_t lanes = list->count - r->lane;
-    for (int k = 0; k < 3; k++) {
-        const int16_t *a = s->x[k], *b = a + span;
-        const int16_t *from = s->sum[k], *end = from + span + 1;
-        const int16_t all = s->sum[k][s->n];
-        int16_t *restrict part = list->part[k] + r->lane;
-        int16_t *restrict rest = list->rest[k] + r->lane;
-        for (uint32_t i = 0; i < lanes; i++) {
-            part[i] = (int16_t)(end[i] - from[i]);
-            rest[i] = (int16_t)(all - part[i] + a[i] + b[i]);
-        }
-    }
-    const int16_t place = span_cost(s, false, span);
-    const int16_t *a = s->wing[0], *b = s->wing[1] + span;
-    const int16_t to_u = share_of[span + 2], to_v = share_of[s->n - span + 2];
-    int16_t *restrict u_size = list->to_u + r->lane;
-    int16_t *restrict v_size = list->to_v + r->lane;
-    int16_t *restrict cost = list->cost + r->lane;
-    for (uint32_t i = 0; i < lanes; i++) {
-        u_size[i] = to_u;
-        v_size[i] = to_v;
-        cost[i] = (int16_t)(place + a[i] + b[i]);
-    }
+    row *r = add_row(s->list, BOTH, span, live);
+    o->to_u = lanes_of(share_of[span + 2]);
+    o->to_v = lanes_of(share_of[s->n - span + 2]);
+    o->place = lanes_of(span_cost(s, false, span));
+    lanes least = weigh_lanes(s, o, r, 0);
+    for (uint32_t at = LANES; at < live; at += LANES)
+        least = lanes_min(least, weigh_lanes(s, o, r, at));
+    r->least = lanes_least(least);
 }
 
-/* Of an open ring: one wing is a member, the other the ghost. */
-static void add_outer(cutter *s, wing_set wings)
+/* Of an open ring: one wing is member x, the other the ghost. All lanes hold
+ * this option, all but the first will be written over. */
+static void weigh_outer(cutter *s, common *o, const row *r, uint32_t x,
+                        const int16_t part[3])
+{
+    const uint32_t n = s->n, at = r->lane + x;
+    const uint32_t span = r->wings == B_ONLY ? x : n - 1 - x;
+    squares q = { lanes_of(0), lanes_of(0) };
+    o->to_u = lanes_of(share_of[span + 2]);
+    o->to_v = lanes_of(share_of[n - span + 1]);
+    o->place = lanes_of(span_cost(s, true, span));
+    for (int k = 0; k < 3; k++)
+        add_axis(o, k, lanes_of(part[k]), lanes_of(s->x[k][x]), &q);
+    const lanes wing = lanes_of(s->wing[r->wings == B_ONLY][x]);
+    lanes_store(s->list->cost + at, weigh_shape(s->list, o, at, q, wing));
+}
+
+static void add_outer(cutter *s, common *o, wing_set wings)
 {
     options *list = s->list;
-    const uint32_t n = s->n;
-    const row *r = add_row(list, wings, 0, n);
-    for (uint32_t i = 0; i < list->count - r->lane; i++) {
-        const uint32_t x = i < n ? i : n - 1, at = r->lane + i;
-        const uint32_t from = wings == B_ONLY ? 0 : x;
-        const uint32_t span = wings == B_ONLY ? x : n - 1 - x;
+    row *r = add_row(list, wings, 0, s->n);
+    int16_t before[3] = { 0, 0, 0 }; /* sums */
+    for (uint32_t x = 0; x < s->n; x++) {
+        int16_t part[3];
         for (int k = 0; k < 3; k++) {
-            const int16_t *sum = s->sum[k];
-            list->part[k][at] = (int16_t)(sum[from + span + 1] - sum[from]);
-            list->rest[k][at] =
-                (int16_t)(sum[n] - list->part[k][at] + s->x[k][x]);
+            const int16_t here = s->x[k][x];
+            part[k] = (int16_t)(wings == B_ONLY ? before[k] + here
+                                                : s->all[k] - before[k]);
+            before[k] = (int16_t)(before[k] + here);
         }
-        list->to_u[at] = share_of[span + 2];
-        list->to_v[at] = share_of[n - span + 1];
-        list->cost[at] =
-            (int16_t)(span_cost(s, true, span) + s->wing[wings == B_ONLY][x]);
+        weigh_outer(s, o, r, x, part);
     }
+    for (uint32_t at = r->lane + s->n; at < list->count; at++)
+        list->cost[at] = TAKEN;
+    r->least = least_of(list->cost + r->lane, padded(s->n));
 }
 
 /* All legal cuts in a fixed order: by span, then first; the ghost last. */
 static void list_options(cutter *s)
 {
     const uint32_t n = s->n;
+    common o;
+    make_common(s, false, &o);
     s->list->count = s->list->row_count = 0;
     for (uint32_t span = 1; span < n; span++)
-        add_inner(s, span, s->open ? n - span : n);
+        add_inner(s, &o, span, s->open ? n - span : n);
     s->list->one_wing = s->list->count;
     if (s->open) {
-        add_outer(s, A_ONLY);
-        add_outer(s, B_ONLY);
-    }
-}
-
-static int16_t scaled_by(int16_t x, int16_t by)
-{
-    return (int16_t)(x * by >> 16);
-}
-
-/* Squares of v's way off the centre of its ring, where u is at the mean of its
- * own, and of u's from its newborn neighbours' displacement. */
-static void square_up(const cutter *s, const options *list, int k,
-                      int16_t *restrict off, int16_t *restrict stray)
-{
-    const int16_t *part = list->part[k], *rest = list->rest[k];
-    const int16_t *to_u = list->to_u, *to_v = list->to_v;
-    const int16_t drift = s->drift[k], by = (int16_t)(1 << s->drop);
-    for (uint32_t i = 0; i < list->count; i++) {
-        const int16_t mean = scaled_by(part[i], to_u[i]);
-        const int16_t sum = (int16_t)(rest[i] + mean);
-        const int16_t v = (int16_t)(scaled_by(sum, to_v[i]) * by);
-        const int16_t u = (int16_t)((int16_t)(mean - drift) * by);
-        off[i] = (int16_t)(off[i] + square_of(v));
-        stray[i] = (int16_t)(stray[i] + square_of(u));
-    }
-}
-
-static void make_costs(const cutter *s, const int32_t *weight, uint32_t count,
-                       int16_t *restrict off, int16_t *restrict stray,
-                       int16_t *restrict cost)
-{
-    const int16_t per = s->per_size, far = s->far;
-    const int16_t w0 = (int16_t)(weight[0] >> 2);
-    const int16_t w1 = (int16_t)(weight[1] >> 2);
-    const int16_t farther = s->newborn ? far : 0;
-    for (uint32_t i = 0; i < count; i++) {
-        off[i] = term_of(off[i], far, per);
-        stray[i] = term_of(stray[i], farther, per);
-        cost[i] = (int16_t)(cost[i] + scaled_by((int16_t)(off[i] * 16), w0) +
-                            scaled_by((int16_t)(stray[i] * 16), w1));
-    }
-}
-
-static void weigh(cutter *s)
-{
-    options *list = s->list;
-    const uint32_t inner = list->one_wing, outer = list->count - inner;
-    int16_t *off = list->term[0], *stray = list->term[1], *cost = list->cost;
-    memset(off, 0, list->count * sizeof *off);
-    memset(stray, 0, list->count * sizeof *stray);
-    for (int k = 0; k < 3; k++)
-        square_up(s, list, k, off, stray);
-    make_costs(s, shape_weights(s, false), inner, off, stray, cost);
-    if (outer)
-        make_costs(s, shape_weights(s, true), outer, off + inner, stray + inner,
-                   cost + inner);
-    for (uint32_t k = 0; k < list->row_count; k++) {
-        const row *r = &list->row[k];
-        const uint32_t end = k + 1 < list->row_count ? r[1].lane : list->count;
-        for (uint32_t i = r->lane + r->live; i < end; i++)
-            list->cost[i] = TAKEN;
+        make_common(s, true, &o);
+        add_outer(s, &o, A_ONLY);
+        add_outer(s, &o, B_ONLY);
     }
 }
 
@@ -386,33 +461,45 @@ static uint32_t count_options(const cutter *s)
 /* ---- coding ---------------------------------------------------------------
  */
 
-static uint32_t cheapest(const options *list)
+static row *cheapest_row(options *list)
 {
-    int16_t least = TAKEN;
-    uint32_t i = 0;
-    for (uint32_t k = 0; k < list->count; k++)
-        least = list->cost[k] < least ? list->cost[k] : least;
-    while (list->cost[i] != least)
+    row *best = list->row;
+    for (uint32_t k = 1; k < list->row_count; k++)
+        best = list->row[k].least < best->least ? &list->row[k] : best;
+    return best;
+}
+
+static uint32_t cheapest(const options *list, const row *r)
+{
+    uint32_t i = r->lane;
+    while (list->cost[i] != r->least)
         i++;
     return i;
 }
 
-/* 2^15 x 2^(-i / 16), rounded. */
-static const uint32_t part_of[16] = {
-    32768, 31379, 30048, 28774, 27554, 26386, 25268, 24196,
-    23170, 22188, 21247, 20347, 19484, 18658, 17867, 17109,
+/* 2^15 x 2^(-i / 16), rounded; i / 16 of them shifted out. */
+#define S(k)                                                                   \
+    32768 >> (k), 31379 >> (k), 30048 >> (k), 28774 >> (k), 27554 >> (k),      \
+        26386 >> (k), 25268 >> (k), 24196 >> (k), 23170 >> (k), 22188 >> (k),  \
+        21247 >> (k), 20347 >> (k), 19484 >> (k), 18658 >> (k), 17867 >> (k),  \
+        17109 >> (k)
+static const uint16_t power[NO_SHARE / 4 + 1] = {
+    S(0), S(1), S(2),  S(3),  S(4),  S(5),  S(6),  S(7),
+    S(8), S(9), S(10), S(11), S(12), S(13), S(14), S(15),
 };
 
 /* 2^(-cost) of every option, the least cost as 2^15. */
 static void make_shares(options *list, int32_t least)
 {
+    const lanes low = lanes_of((int16_t)least);
+    const lanes high = lanes_of((int16_t)(least + NO_SHARE));
     uint32_t sum = 0;
-    for (uint32_t i = 0; i < list->count; i++) {
-        uint32_t over = (uint32_t)(list->cost[i] - least);
-        over = over < 64 * 16 ? over : 64 * 16; /* for a share of 0 */
-        const uint32_t share = part_of[over / 4 % 16] >> over / 64;
-        list->share[i] = (uint16_t)share;
-        sum += share;
+    for (uint32_t k = 0; k < list->count; k += LANES) {
+        const lanes cost = lanes_min(lanes_load(list->cost + k), high);
+        int16_t over[LANES];
+        lanes_store(over, lanes_right(lanes_sub(cost, low), 2));
+        for (uint32_t i = 0; i < LANES; i++)
+            sum += list->share[k + i] = power[over[i]];
     }
     list->share_sum = sum;
 }
@@ -436,8 +523,9 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
 {
     options *list = s->list;
     const uint32_t count = count_options(s);
-    uint32_t best = cheapest(list);
-    make_shares(list, list->cost[best]);
+    row *r = cheapest_row(list);
+    uint32_t best = cheapest(list, r);
+    make_shares(list, r->least);
     uint32_t sum = list->share_sum;
     for (uint32_t rank = 0; rank + 1 < count; rank++) {
         pmesh_bit *m =
@@ -448,7 +536,9 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
             break;
         list->cost[best] = TAKEN;
         sum -= list->share[best];
-        best = cheapest(list);
+        r->least = least_of(list->cost + r->lane, padded(r->live));
+        r = cheapest_row(list);
+        best = cheapest(list, r);
     }
     return best;
 }
@@ -465,42 +555,46 @@ static void adjust(int32_t *weight, int32_t change, int32_t largest)
  * costs. */
 static void make_errors(options *list, uint32_t truth)
 {
-    const uint16_t per_sum =
-        (uint16_t)(((uint32_t)ERROR_ONE << 16) / list->share_sum);
-    int16_t *restrict error = list->cost;
-    const uint16_t *restrict share = list->share;
-    for (uint32_t i = 0; i < list->count; i++)
-        error[i] = (int16_t)(0 - (int32_t)((uint32_t)share[i] * per_sum >> 16));
-    error[truth] = (int16_t)(error[truth] + ERROR_ONE);
+    const lanes per_sum =
+        lanes_of((int16_t)(((uint32_t)ERROR_ONE << 16) / list->share_sum));
+    for (uint32_t k = 0; k < list->count; k += LANES) {
+        const lanes share = lanes_load((const int16_t *)list->share + k);
+        lanes_store(
+            list->cost + k,
+            lanes_sub(lanes_of(0), lanes_high_unsigned(share, per_sum)));
+    }
+    list->cost[truth] = (int16_t)(list->cost[truth] + ERROR_ONE);
 }
 
 static void learn_shape(options *list, int32_t *weight, uint32_t begin,
                         uint32_t end)
 {
-    for (int t = 0; t < PMESH_CUT_TERMS; t++) {
-        int32_t sum = 0;
-        for (uint32_t i = begin; i < end; i++)
-            sum += list->cost[i] * list->term[t][i];
-        adjust(&weight[t], sum / LEARN_SHAPE, LARGEST_SHAPE);
-    }
+    quads sum[PMESH_CUT_TERMS] = { quads_of(0), quads_of(0) };
+    for (uint32_t k = begin; k < end; k += LANES)
+        for (int t = 0; t < PMESH_CUT_TERMS; t++)
+            sum[t] =
+                quads_add(sum[t], quads_dot(lanes_load(list->cost + k),
+                                            lanes_load(list->term[t] + k)));
+    for (int t = 0; t < PMESH_CUT_TERMS; t++)
+        adjust(&weight[t], quads_total(sum[t]) / LEARN_SHAPE, LARGEST_SHAPE);
 }
 
-static void learn_row(cutter *s, const row *r)
+static void learn_inner(cutter *s, const row *r)
+{
+    int16_t *a = s->wing_error[0], *b = s->wing_error[1] + r->span;
+    quads all = quads_of(0);
+    for (uint32_t i = 0; i < r->live; i += LANES) {
+        const lanes error = lanes_load(s->list->cost + r->lane + i);
+        lanes_store(a + i, lanes_add(lanes_load(a + i), error));
+        lanes_store(b + i, lanes_add(lanes_load(b + i), error));
+        all = quads_add(all, quads_dot(error, lanes_of(1)));
+    }
+    adjust(span_weight(s, false, r->span), quads_total(all), LARGEST_PLACE);
+}
+
+static void learn_outer(cutter *s, const row *r)
 {
     const int16_t *error = s->list->cost + r->lane;
-    if (r->wings == BOTH) {
-        int16_t *restrict a = s->wing_error[0];
-        int16_t *restrict b = s->wing_error[1] + r->span;
-        int32_t all = 0;
-        const uint32_t lanes = padded(r->live);
-        for (uint32_t i = 0; i < lanes; i++) {
-            a[i] = (int16_t)(a[i] + error[i]);
-            b[i] = (int16_t)(b[i] + error[i]);
-            all += error[i];
-        }
-        adjust(span_weight(s, false, r->span), all, LARGEST_PLACE);
-        return;
-    }
     const int side = r->wings == B_ONLY;
     for (uint32_t i = 0; i < r->live; i++) {
         s->wing_error[side][i] = (int16_t)(s->wing_error[side][i] + error[i]);
@@ -511,17 +605,24 @@ static void learn_row(cutter *s, const row *r)
 
 static void learn_wings(cutter *s)
 {
-    int32_t reach = 0;
+    int16_t error[2][ROOM];
+    quads reach = quads_of(0);
+    for (uint32_t i = 0; i < s->n; i += LANES)
+        for (int side = 0; side < 2; side++) {
+            lanes e = lanes_load(s->wing_error[side] + i);
+            if (!s->open)
+                e = lanes_add(e, lanes_load(s->wing_error[side] + i + s->n));
+            lanes_store(error[side] + i, e);
+            /* Behind the last member of a ring reach is 0. */
+            reach = quads_add(reach, quads_dot(e, lanes_load(s->reach + i)));
+        }
     for (uint32_t i = 0; i < s->n; i++)
         for (int side = 0; side < 2; side++) {
-            const int16_t *error = s->wing_error[side];
-            const int32_t e = error[i] + (s->open ? 0 : error[i + s->n]);
-            adjust(s->degree[side][i], e, LARGEST_PLACE);
-            adjust(s->state[side][i], e, LARGEST_PLACE);
-            reach += e * s->reach[i];
+            adjust(s->degree[side][i], error[side][i], LARGEST_PLACE);
+            adjust(s->state[side][i], error[side][i], LARGEST_PLACE);
         }
-    adjust(&s->weights->reach[s->open][s->newborn > 0], reach / LEARN_SHAPE,
-           LARGEST_SHAPE);
+    adjust(&s->weights->reach[s->open][s->newborn > 0],
+           quads_total(reach) / LEARN_SHAPE, LARGEST_SHAPE);
 }
 
 /* One step down the gradient of the true cut's code length, as if it had been
@@ -536,7 +637,10 @@ static void learn(cutter *s, uint32_t truth)
     for (int side = 0; side < 2; side++)
         memset(s->wing_error[side], 0, (2 * s->n + LANES) * sizeof(int16_t));
     for (uint32_t k = 0; k < list->row_count; k++)
-        learn_row(s, &list->row[k]);
+        if (list->row[k].wings == BOTH)
+            learn_inner(s, &list->row[k]);
+        else
+            learn_outer(s, &list->row[k]);
     learn_wings(s);
 }
 
@@ -578,10 +682,9 @@ void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
     s.weights = &c->models.cut_weights;
     s.list = (options *)c->cut_room;
     place_points(&s, c, v, ring);
-    sum_up(&s);
+    measure(&s);
     weigh_wings(&s, c, ring);
     list_options(&s);
-    weigh(&s);
     const uint32_t truth =
         code_rank(&s, c, coder, coder->encoding ? find(&s, cut) : 0);
     learn(&s, truth);

@@ -24,32 +24,60 @@ static const uint8_t place[PMESH_FIT_TERMS][PMESH_FIT_TERMS] = {
     { 21, 22, 23, 24, 25, 26, 27 },
 };
 
+/* One row of the sample, which has its first pair at `at`; `pair` gets the new
+ * sums / 2^16. */
+static inline void take_row(pmesh_fit *f, const int32_t *product, int i, int at,
+                            int64_t weight, int64_t *restrict pair)
+{
+    int64_t *restrict sum = f->pair + at;
+    for (int j = 0; j <= i; j++) {
+        const int64_t now = sum[j] + weight * product[j] - (sum[j] >> FORGET);
+        sum[j] = now;
+        pair[at + j] = now >> 16;
+    }
+    f->target[i] +=
+        weight * product[PMESH_FIT_TERMS] - (f->target[i] >> FORGET);
+}
+
+/* Row by row, so that each has a constant length. */
+static void take_in(pmesh_fit *f, const pmesh_sample *s, int64_t weight,
+                    int64_t pair[PMESH_FIT_PAIRS])
+{
+    take_row(f, s->product[0], 0, 0, weight, pair);
+    take_row(f, s->product[1], 1, 1, weight, pair);
+    take_row(f, s->product[2], 2, 3, weight, pair);
+    take_row(f, s->product[3], 3, 6, weight, pair);
+    take_row(f, s->product[4], 4, 10, weight, pair);
+    take_row(f, s->product[5], 5, 15, weight, pair);
+    take_row(f, s->product[6], 6, 21, weight, pair);
+}
+
 /* Sums stay below 2^28 x 2^18 x 2^7 = 2^53: shifted, times a weight, and all
  * of them, below 2^59. */
-static void improve(pmesh_fit *f, int64_t pull)
+static void improve(pmesh_fit *f, const int64_t pair[PMESH_FIT_PAIRS],
+                    int64_t pull)
 {
+    int64_t weight[PMESH_FIT_TERMS];
+    for (int t = 0; t < PMESH_FIT_TERMS; t++)
+        weight[t] = f->weight[t];
     for (int t = 0; t < PMESH_FIT_TERMS; t++) {
         const int64_t own = f->pair[place[t][t]];
         int64_t rest = f->target[t];
         for (int j = 0; j < PMESH_FIT_TERMS; j++)
-            rest -= (f->pair[place[t][j]] >> 16) * f->weight[j];
-        rest += (pull >> 16) * (f->start[t] - f->weight[t]);
+            rest -= pair[place[t][j]] * weight[j];
+        rest += (pull >> 16) * (f->start[t] - weight[t]);
         const int64_t step = rest / (((own + pull) >> 16) + 1);
-        const int64_t w = f->weight[t] + step;
-        f->weight[t] = (int32_t)(w > LARGEST    ? LARGEST
-                                 : w < -LARGEST ? -LARGEST
-                                                : w);
+        const int64_t w = weight[t] + step;
+        weight[t] = w > LARGEST ? LARGEST : w < -LARGEST ? -LARGEST : w;
+        f->weight[t] = (int32_t)weight[t];
     }
 }
 
 void pmesh_fit_learn(pmesh_fit *f, const pmesh_sample *s, int32_t weight,
                      int64_t pull)
 {
-    for (int i = 0; i < PMESH_FIT_PAIRS; i++)
-        f->pair[i] += (int64_t)weight * s->pair[i] - (f->pair[i] >> FORGET);
-    for (int t = 0; t < PMESH_FIT_TERMS; t++)
-        f->target[t] +=
-            (int64_t)weight * s->target[t] - (f->target[t] >> FORGET);
+    int64_t pair[PMESH_FIT_PAIRS];
+    take_in(f, s, weight, pair);
     f->count++;
-    improve(f, pull);
+    improve(f, pair, pull);
 }

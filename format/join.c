@@ -212,9 +212,9 @@ static void meet(pmesh_codec *c, uint32_t a, uint32_t b)
     const uint32_t end[2] = { a, b };
     for (int i = 0; i < 2; i++) {
         const int32_t *other = c->mesh.position[end[1 - i]];
-        c->degree[end[i]]++;
+        c->near[end[i]].degree++;
         for (int k = 0; k < 3; k++)
-            c->around[end[i]][k] += (uint32_t)other[k];
+            c->near[end[i]].sum[k] += (uint32_t)other[k];
     }
 }
 
@@ -223,9 +223,9 @@ static void part(pmesh_codec *c, uint32_t a, uint32_t b)
     const uint32_t end[2] = { a, b };
     for (int i = 0; i < 2; i++) {
         const int32_t *other = c->mesh.position[end[1 - i]];
-        c->degree[end[i]]--;
+        c->near[end[i]].degree--;
         for (int k = 0; k < 3; k++)
-            c->around[end[i]][k] -= (uint32_t)other[k];
+            c->near[end[i]].sum[k] -= (uint32_t)other[k];
     }
 }
 
@@ -234,8 +234,8 @@ static void part(pmesh_codec *c, uint32_t a, uint32_t b)
 static void count_neighbours(pmesh_codec *c, uint32_t v, uint32_t u,
                              const pmesh_fans *fans, const pmesh_parting *p)
 {
-    c->degree[u] = 0;
-    memset(c->around[u], 0, sizeof c->around[u]);
+    c->near[u].degree = 0;
+    memset(c->near[u].sum, 0, sizeof c->near[u].sum);
     for (uint32_t i = 0; i < fans->count; i++) {
         const pmesh_ring *ring = &fans->ring[i];
         if (p->way[i] == PMESH_FAN_STAYS)

@@ -7,6 +7,7 @@
 #include "format/codec.h"
 #include "format/cut.h"
 #include "format/join.h"
+#include "format/lanes.h"
 #include "format/predict.h"
 #include "format/rank.h"
 #include "format/residual.h"
@@ -40,6 +41,19 @@ static uint32_t queue_ring(pmesh_codec *c, uint32_t start, uint32_t count)
     return h == PMESH_NONE ? queue_vertex(c, m->vertex[last], count) : count;
 }
 
+/* Of a vertex that the visit comes to later on: its first face, where known. */
+static void prefetch_visit(const pmesh_codec *c, uint32_t place, uint32_t end)
+{
+    enum { AHEAD = 6, FAR_AHEAD = 12 };
+    const pmesh_mesh *m = &c->mesh;
+    if (place + FAR_AHEAD >= end)
+        return;
+    const uint32_t h = m->first[c->order[place + AHEAD]];
+    pmesh_prefetch(&m->first[c->order[place + FAR_AHEAD]]);
+    pmesh_prefetch(&m->twin[h]);
+    pmesh_prefetch(&m->vertex[h]);
+}
+
 /* Breadth first over the rings, from vertex 0 and again from the lowest vertex
  * not seen. */
 void pmesh_level_begin(pmesh_codec *c)
@@ -54,10 +68,12 @@ void pmesh_level_begin(pmesh_codec *c)
             continue;
         c->state[seed] = PMESH_KEPT;
         c->order[count++] = seed;
-        while (next < count)
+        while (next < count) {
+            prefetch_visit(c, next, count);
             for (uint32_t fan = m->first[c->order[next++]]; fan != PMESH_NONE;
                  fan = m->fan ? m->fan[fan] : PMESH_NONE)
                 count = queue_ring(c, fan, count);
+        }
     }
     memset(c->state, PMESH_UNVISITED, n);
     c->level_vertex_count = n;
@@ -116,44 +132,35 @@ static void place_provisionally(pmesh_codec *c, uint32_t u, uint32_t v,
         position[u][k] = (int32_t)(sum[k] / (count + 1));
 }
 
-static void add(uint32_t sum[3], const int32_t position[3])
-{
-    for (int k = 0; k < 3; k++)
-        sum[k] += (uint32_t)position[k];
-}
-
-static void subtract(uint32_t sum[3], const int32_t position[3])
-{
-    for (int k = 0; k < 3; k++)
-        sum[k] -= (uint32_t)position[k];
-}
-
 /* Members that are no wings change their neighbour v for u; wings gain u. */
 static void count_neighbours(pmesh_codec *c, uint32_t v, uint32_t u,
                              const pmesh_ring *ring, pmesh_cut cut)
 {
-    int32_t(*position)[3] = c->mesh.position;
+    const int32_t(*position)[3] = (const int32_t(*)[3])c->mesh.position;
+    const quads at_u = quads_triple(position[u]),
+                at_v = quads_triple(position[v]);
+    quads near_u = at_v, near_v = quads_add(pmesh_near_load(&c->near[v]), at_u);
     uint32_t first;
     const uint32_t count = handed_over(ring, cut, &first);
-    memset(c->around[u], 0, sizeof c->around[u]);
-    add(c->around[u], position[v]);
-    add(c->around[v], position[u]);
     for (uint32_t i = first; i < first + count; i++) {
         const uint32_t x = member(ring, i);
         const bool wing = (i == first && cut.first != PMESH_NONE) ||
                           (i == first + count - 1 && cut.end != PMESH_NONE);
-        add(c->around[u], position[x]);
-        add(c->around[x], position[u]);
-        if (wing) {
-            c->degree[x]++;
-        } else {
-            subtract(c->around[x], position[v]);
-            subtract(c->around[v], position[x]);
+        const quads at_x = quads_triple(position[x]);
+        quads near_x = quads_add(pmesh_near_load(&c->near[x]), at_u);
+        near_u = quads_add(near_u, at_x);
+        if (!wing) {
+            near_x = quads_sub(near_x, at_v);
+            near_v = quads_sub(near_v, at_x);
         }
+        pmesh_near_store(&c->near[x], near_x);
+        c->near[x].degree += wing;
     }
-    c->degree[u] = count + 1;
-    c->degree[v] = ring->count - count + 1 + (cut.first != PMESH_NONE) +
-                   (cut.end != PMESH_NONE);
+    pmesh_near_store(&c->near[u], near_u);
+    pmesh_near_store(&c->near[v], near_v);
+    c->near[u].degree = count + 1;
+    c->near[v].degree = ring->count - count + 1 + (cut.first != PMESH_NONE) +
+                        (cut.end != PMESH_NONE);
 }
 
 static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
@@ -185,13 +192,15 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
     c->block.face_count += faces;
     if (oracle)
         oracle->split_done(oracle->user, u, m->face_count - faces, faces);
+    if (!m->material && !m->value_count)
+        return PMESH_OK;
     const uint32_t h = 3 * (m->face_count - faces);
     const bool a = cut.first != PMESH_NONE, b = cut.end != PMESH_NONE;
-    const pmesh_fresh fresh = {
-        .count = 1,
-        .face = { { a ? h : PMESH_NONE, !b ? PMESH_NONE : a ? h + 3 : h } },
-        .start = { m->first[u] }
-    };
+    const pmesh_fresh fresh = { .count = 1,
+                                .face = { { a ? h : PMESH_NONE, !b  ? PMESH_NONE
+                                                                : a ? h + 3
+                                                                    : h } },
+                                .start = { m->first[u] } };
     return pmesh_wedge_split_code(c, coder, oracle, u, &fresh);
 }
 
@@ -232,6 +241,7 @@ static pmesh_status code_connectivity(pmesh_codec *c, pmesh_coder *coder,
     while (c->block.vertex_count < split_count && status == PMESH_OK) {
         if (c->level_next == c->level_vertex_count)
             return corrupt(c, "SPEC 6.3: more splits than vertices");
+        prefetch_visit(c, c->level_next, c->level_vertex_count);
         const uint32_t v = c->order[c->level_next++];
         c->state[v] = PMESH_KEPT;
         status = c->sizes.joined ? visit_joined(c, coder, oracle, v)
@@ -251,10 +261,47 @@ static pmesh_predict_kind child_kind(const pmesh_codec *c)
 }
 
 /* NULL if the ring is too large. */
-static const pmesh_ring *gather(const pmesh_codec *c, uint32_t v,
-                                pmesh_ring *ring)
+static const pmesh_site *find_site(const pmesh_codec *c, uint32_t v,
+                                   uint32_t partner, pmesh_site *site)
 {
-    return pmesh_ring_gather(&c->mesh, v, ring) ? ring : NULL;
+    return pmesh_site_find(c, v, partner, site) ? site : NULL;
+}
+
+static uint32_t *kept_site(const pmesh_codec *c, uint32_t u)
+{
+    return c->scratch + (size_t)PMESH_KEPT_SITE * (u - c->block.vertex);
+}
+
+static const pmesh_ring *ring_of(const pmesh_site *site)
+{
+    return site ? &site->ring : NULL;
+}
+
+static void keep_sites(pmesh_codec *c)
+{
+    const uint32_t begin = c->block.vertex;
+    for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
+        pmesh_site site;
+        pmesh_site_keep(find_site(c, u, c->mesh.parent[u], &site),
+                        kept_site(c, u));
+    }
+}
+
+/* Its ring lies anywhere in memory, even that of the next child. */
+static void prefetch_site(const pmesh_codec *c, uint32_t u)
+{
+    if (u < c->block.vertex + c->block.vertex_count)
+        pmesh_site_prefetch(c, kept_site(c, u));
+}
+
+static const pmesh_site *take_site(const pmesh_codec *c, uint32_t u,
+                                   pmesh_site *site)
+{
+    enum { AHEAD = 4 };
+    prefetch_site(c, u + AHEAD);
+    return pmesh_site_kept(kept_site(c, u), site)
+               ? site
+               : find_site(c, u, c->mesh.parent[u], site);
 }
 
 /* Connectivity is complete now: a better guess for every provisional one. */
@@ -263,15 +310,15 @@ static void sweep(pmesh_codec *c)
     pmesh_mesh *m = &c->mesh;
     const uint32_t begin = c->block.vertex;
     for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        pmesh_ring space;
-        const pmesh_ring *ring = gather(c, u, &space);
         const uint32_t v = m->parent[u];
+        pmesh_site space;
+        const pmesh_site *site = take_site(c, u, &space);
         pmesh_prediction p;
         int32_t position[3];
-        pmesh_predict(c, child_kind(c), u, ring, v, m->position[v], begin, &p);
+        pmesh_predict(c, child_kind(c), u, site, m->position[v], begin, &p);
         for (int k = 0; k < 3; k++)
             position[k] = (int32_t)(p.position[k] >> 4);
-        pmesh_place(c, u, ring, position);
+        pmesh_place(c, u, ring_of(site), position);
     }
 }
 
@@ -291,7 +338,7 @@ static uint32_t importance_of(const pmesh_mesh *m, uint32_t u,
 /* Codes the final position of x, a child (which 0) or a moved parent (1). */
 static bool code_position(pmesh_codec *c, pmesh_coder *coder,
                           const pmesh_oracle *oracle, int which, uint32_t x,
-                          const pmesh_ring *ring, const pmesh_prediction *p)
+                          const pmesh_ring *ring, pmesh_prediction *p)
 {
     int32_t position[3] = { 0, 0, 0 };
     if (oracle)
@@ -309,15 +356,14 @@ static bool code_moved_parent(pmesh_codec *c, pmesh_coder *coder,
     const uint32_t v = m->parent[u];
     const int32_t *before = c->unsplit[u - c->block.vertex];
     int32_t mirrored[3];
-    pmesh_ring space;
-    const pmesh_ring *ring = gather(c, v, &space);
+    pmesh_site space;
+    const pmesh_site *site = find_site(c, v, u, &space);
     pmesh_prediction p;
     for (int k = 0; k < 3; k++) /* parent and child part about evenly */
         mirrored[k] =
             clamp(2 * (int64_t)before[k] - m->position[u][k], c->bounds[k]);
-    pmesh_predict(c, PMESH_PREDICT_MOVED_PARENT, v, ring, u, mirrored, u + 1,
-                  &p);
-    return code_position(c, coder, oracle, 1, v, ring, &p);
+    pmesh_predict(c, PMESH_PREDICT_MOVED_PARENT, v, site, mirrored, u + 1, &p);
+    return code_position(c, coder, oracle, 1, v, ring_of(site), &p);
 }
 
 static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
@@ -327,11 +373,11 @@ static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
     const uint32_t begin = c->block.vertex;
     for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
         const uint32_t v = m->parent[u];
-        pmesh_ring space;
-        const pmesh_ring *ring = gather(c, u, &space);
+        pmesh_site space;
+        const pmesh_site *site = take_site(c, u, &space);
         pmesh_prediction p;
-        pmesh_predict(c, child_kind(c), u, ring, v, m->position[v], u, &p);
-        if (!code_position(c, coder, oracle, 0, u, ring, &p))
+        pmesh_predict(c, child_kind(c), u, site, m->position[v], u, &p);
+        if (!code_position(c, coder, oracle, 0, u, ring_of(site), &p))
             return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
         c->importance[u - begin] = importance_of(m, u, m->position[v], &p);
         if (c->sizes.moves && !code_moved_parent(c, coder, oracle, u))
@@ -366,6 +412,7 @@ pmesh_status pmesh_block_code(pmesh_codec *c, pmesh_coder *coder,
     if (status != PMESH_OK)
         return status;
     count_part(c, coder, 0, &written);
+    keep_sites(c);
     sweep(c);
     status = code_positions(c, coder, oracle);
     if (status != PMESH_OK)

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "format/lanes.h"
 #include "format/star.h"
 
 enum {
@@ -18,18 +19,28 @@ static int64_t limited(int64_t value, int64_t limit)
     return value < -limit ? -limit : value > limit ? limit : value;
 }
 
-static int32_t within(int32_t value, int32_t limit)
+/* The factor 2^shift within SUM_LIMIT; shift <= PMESH_STAR_BITS. */
+typedef struct scale {
+    int up, down;
+    int32_t limit;
+} scale;
+
+static scale make_scale(int shift)
 {
-    return value < -limit ? -limit : value > limit ? limit : value;
+    const int up = shift > 0 ? shift : 0;
+    return (scale){ up, up - shift, SUM_LIMIT >> up };
 }
 
-/* x 2^shift within SUM_LIMIT; shift <= PMESH_STAR_BITS. */
-static int32_t scaled(int32_t value, int shift)
+static inline int32_t scaled(const scale *by, int32_t value)
 {
-    if (shift < 0)
-        return within(value >> -shift, SUM_LIMIT);
-    return within(value, SUM_LIMIT >> shift) * (1 << shift);
+    const int32_t x = value >> by->down;
+    return (x < -by->limit  ? -by->limit
+            : x > by->limit ? by->limit
+                            : x) *
+           (1 << by->up);
 }
+
+/* ---- sites ------------------------------------------------------------- */
 
 static uint32_t index_of(const pmesh_ring *ring, uint32_t vertex)
 {
@@ -39,91 +50,193 @@ static uint32_t index_of(const pmesh_ring *ring, uint32_t vertex)
     return i;
 }
 
-/* ---- terms, from the ring's mean ---------------------------------------- */
-
-/* Mean over the ring of (mean of a member's other neighbours - member): how
- * the surface bends around here. Sums of positions relative to `base` fit 32
- * bits. */
-static void bend(const pmesh_codec *c, const pmesh_star *s,
-                 const pmesh_ring *ring, uint32_t x, const int32_t base[3],
-                 int32_t out[3])
+/* Member `steps` places behind the partner. */
+static uint32_t behind_partner(const pmesh_site *s, uint32_t steps)
 {
-    const int32_t *at = c->mesh.position[x];
-    int32_t sum[3] = { 0, 0, 0 };
-    uint32_t used = 0;
-    for (uint32_t i = 0; i < ring->count; i++) {
-        const uint32_t y = ring->vertex[i], others = c->degree[y] - 1;
-        if (others < 2 || others >= PMESH_MAX_RING)
-            continue;
-        for (int k = 0; k < 3; k++) {
-            const uint32_t all =
-                c->around[y][k] - (uint32_t)at[k] - others * (uint32_t)base[k];
-            sum[k] += pmesh_share(scaled((int32_t)all, s->shift), others) -
-                      s->point[k][i];
-        }
-        used++;
-    }
-    for (int k = 0; k < 3; k++)
-        out[k] = used ? pmesh_share(sum[k], used) : 0;
+    const uint32_t i = s->partner + steps, n = s->ring.count;
+    return i < n ? i : i - n;
 }
 
-/* Straight on from the member behind half-edge h, away from where h starts:
- * twice the member less what lies opposite in its ring. */
-static void straight_on(const pmesh_codec *c, const pmesh_star *s, uint32_t h,
+/* What lies opposite of x in the ring of its neighbour y, where half-edge h
+ * leads from x to y: two vertices, the same twice if one does. */
+static void look_beyond(const pmesh_codec *c, uint32_t h, uint32_t y,
+                        uint32_t beyond[2])
+{
+    const pmesh_mesh *m = &c->mesh;
+    const uint32_t n = c->near[y].degree;
+    uint32_t now = m->twin[h], before = now;
+    if (n > PMESH_MAX_RING || now == PMESH_NONE)
+        return;
+    for (uint32_t i = 0; i < (n + 1) / 2; i++) {
+        before = now;
+        now = pmesh_turn_left(m, now);
+        if (now == PMESH_NONE)
+            return;
+    }
+    beyond[1] = m->vertex[pmesh_next(now)];
+    beyond[0] = n % 2 ? m->vertex[pmesh_next(before)] : beyond[1];
+}
+
+bool pmesh_site_find(const pmesh_codec *c, uint32_t x, uint32_t partner,
+                     pmesh_site *s)
+{
+    const pmesh_ring *ring = &s->ring;
+    if (!pmesh_ring_gather(&c->mesh, x, &s->ring))
+        return false;
+    s->partner = index_of(ring, partner);
+    const uint32_t i[2] = { s->partner, behind_partner(s, ring->count / 2) };
+    for (int t = 0; t < 2; t++) {
+        s->beyond[t][0] = s->beyond[t][1] = PMESH_NONE;
+        if (i[t] < ring->face_count)
+            look_beyond(c, ring->edge[i[t]], ring->vertex[i[t]], s->beyond[t]);
+    }
+    return true;
+}
+
+/* count, open, partner by bytes; beyond; the ring. */
+void pmesh_site_keep(const pmesh_site *s, uint32_t kept[PMESH_KEPT_SITE])
+{
+    kept[0] = 0;
+    if (!s || s->ring.count > PMESH_KEPT_RING)
+        return;
+    kept[0] = s->ring.count | (uint32_t)s->ring.open << 8 | s->partner << 16;
+    memcpy(kept + 1, s->beyond, sizeof s->beyond);
+    memcpy(kept + 5, s->ring.vertex, PMESH_KEPT_RING * sizeof *kept);
+}
+
+bool pmesh_site_kept(const uint32_t kept[PMESH_KEPT_SITE], pmesh_site *s)
+{
+    s->ring.count = kept[0] & 0xff;
+    s->ring.open = kept[0] >> 8 & 1;
+    s->ring.face_count = s->ring.count - s->ring.open;
+    s->partner = kept[0] >> 16;
+    memcpy(s->beyond, kept + 1, sizeof s->beyond);
+    memcpy(s->ring.vertex, kept + 5, PMESH_KEPT_RING * sizeof *kept);
+    return s->ring.count > 0;
+}
+
+void pmesh_site_prefetch(const pmesh_codec *c,
+                         const uint32_t kept[PMESH_KEPT_SITE])
+{
+    const uint32_t n = kept[0] & 0xff;
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t y = kept[5 + i];
+        pmesh_prefetch(&c->near[y]);
+        pmesh_prefetch(c->mesh.position[y]);
+    }
+}
+
+/* ---- terms, from the ring's mean ---------------------------------------- */
+
+/* What a walk over the ring's members tells. */
+typedef struct walk {
+    uint32_t unknown, irregular;
+    /* Mean over the ring of (mean of a member's other neighbours - member): how
+     * the surface bends around here. */
+    int32_t bend[3];
+} walk;
+
+/* As scaled(), and shared by `count`. */
+static inline quads shared(const scale *by, quads x, uint32_t count)
+{
+    const quads limit = quads_of(by->limit), low = quads_of(-by->limit);
+    x = quads_min(quads_max(quads_right(x, by->down), low), limit);
+    return quads_high(quads_left(x, by->up), (uint32_t)pmesh_reciprocal[count]);
+}
+
+/* Sums of positions relative to `base` fit 32 bits. */
+static void walk_ring(const pmesh_codec *c, const pmesh_star *s,
+                      const scale *by, const pmesh_ring *ring, uint32_t x,
+                      const int32_t base[3], uint32_t provisional, walk *w)
+{
+    const quads at = quads_triple(c->mesh.position[x]);
+    const quads from = quads_triple(base);
+    quads sum = quads_of(0);
+    int32_t total[QUADS];
+    uint32_t used = 0, unknown = 0, irregular = 0;
+    for (uint32_t i = 0; i < ring->count; i++) {
+        const uint32_t y = ring->vertex[i];
+        const pmesh_near *near = &c->near[y];
+        const uint32_t others = near->degree - 1;
+        irregular += near->degree != 6;
+        unknown += y >= provisional;
+        if (others < 2 || others >= PMESH_MAX_RING)
+            continue;
+        const quads all = quads_sub(pmesh_near_load(near),
+                                    quads_add(at, quads_times(from, others)));
+        sum = quads_add(sum, quads_sub(shared(by, all, others), s->row[i]));
+        used++;
+    }
+    quads_store(total, sum);
+    w->unknown = unknown;
+    w->irregular = irregular;
+    for (int k = 0; k < 3; k++)
+        w->bend[k] = used ? pmesh_share(total[k], used) : 0;
+}
+
+/* Straight on over member y: twice the member less what lies beyond. */
+static void straight_on(const pmesh_codec *c, const pmesh_star *s,
+                        const scale *by, uint32_t y, const uint32_t beyond[2],
                         const int32_t base[3], int32_t out[3])
 {
     const pmesh_mesh *m = &c->mesh;
-    const uint32_t y = m->vertex[pmesh_next(h)], n = c->degree[y];
-    uint32_t back = m->twin[h], far[2] = { 0, 0 };
-    if (n > PMESH_MAX_RING || back == PMESH_NONE)
+    if (beyond[0] == PMESH_NONE)
         return;
-    for (uint32_t i = 0; i < (n + 1) / 2; i++) {
-        far[0] = m->vertex[pmesh_next(back)];
-        back = pmesh_turn_left(m, back);
-        if (back == PMESH_NONE)
-            return;
-    }
-    far[1] = m->vertex[pmesh_next(back)];
-    if (n % 2 == 0)
-        far[0] = far[1];
+    const int32_t *near = m->position[y];
+    const int32_t *far = m->position[beyond[0]], *far2 = m->position[beyond[1]];
     for (int k = 0; k < 3; k++) {
-        const int32_t twice = 4 * m->position[y][k] - m->position[far[0]][k] -
-                              m->position[far[1]][k] - 2 * base[k];
-        out[k] = (scaled(twice, s->shift) >> 1) - s->mean[k];
+        const int32_t twice = 4 * near[k] - far[k] - far2[k] - 2 * base[k];
+        out[k] = (scaled(by, twice) >> 1) - s->mean[k];
     }
 }
 
+/* Limits the terms and finds their heights. */
+static void finish_terms(const pmesh_star *s,
+                         int32_t term[PMESH_FIT_TERMS + 1][3],
+                         pmesh_prediction *p)
+{
+    const lanes low = lanes_of(-TERM_LIMIT), high = lanes_of(TERM_LIMIT);
+    const lanes none = lanes_of(0);
+    lanes t[3], n[3];
+    for (int k = 0; k < 3; k++) {
+        int32_t along[LANES];
+        for (int i = 0; i < LANES; i++)
+            along[i] = term[i][k];
+        t[k] = lanes_within(quads_load(along), quads_load(along + QUADS));
+        t[k] = lanes_min(lanes_max(t[k], low), high);
+        n[k] = lanes_of((int16_t)s->normal[k]);
+        lanes_store(p->term[k], t[k]);
+    }
+    const quads first = quads_add(quads_first(t[0], t[1], n[0], n[1]),
+                                  quads_first(t[2], none, n[2], none));
+    const quads last = quads_add(quads_last(t[0], t[1], n[0], n[1]),
+                                 quads_last(t[2], none, n[2], none));
+    quads_store(p->height, quads_right(first, PMESH_NORMAL_BITS));
+    quads_store(p->height + QUADS, quads_right(last, PMESH_NORMAL_BITS));
+}
+
 static void make_terms(const pmesh_codec *c, const pmesh_star *s,
-                       const pmesh_ring *ring, uint32_t x, uint32_t partner,
+                       const pmesh_site *site, const scale *by, const walk *w,
                        pmesh_prediction *p)
 {
-    const uint32_t n = s->count, at = index_of(ring, partner);
-    const uint32_t half = at + n / 2, half2 = at + (n + 1) / 2;
-    const uint32_t far = half < n ? half : half - n;
-    const uint32_t far2 = half2 < n ? half2 : half2 - n;
+    const pmesh_ring *ring = &site->ring;
+    const uint32_t n = s->count, far = behind_partner(site, n / 2);
+    const uint32_t far2 = behind_partner(site, (n + 1) / 2);
     /* Of an open ring the ends say more than what lies opposite. */
     const uint32_t a = s->open ? 0 : far, b = s->open ? n - 1 : far2;
+    int32_t term[PMESH_FIT_TERMS + 1][3];
     for (int k = 0; k < 3; k++) {
         const int16_t *point = s->point[k];
-        p->term[0][k] = -s->mean[k]; /* the partner is the base point */
-        p->term[1][k] = ((point[a] + point[b]) >> 1) - s->mean[k];
+        term[0][k] = -s->mean[k]; /* the partner is the base point */
+        term[1][k] = ((point[a] + point[b]) >> 1) - s->mean[k];
+        term[2][k] = w->bend[k];
     }
-    bend(c, s, ring, x, p->base, p->term[2]);
-    pmesh_star_centres(s, p->term[3], p->term[4]);
-    memset(p->term[5], 0, 2 * sizeof p->term[5]);
-    if (at < ring->face_count)
-        straight_on(c, s, ring->edge[at], p->base, p->term[5]);
-    if (far < ring->face_count)
-        straight_on(c, s, ring->edge[far], p->base, p->term[6]);
-
-    for (int t = 0; t < PMESH_FIT_TERMS; t++) {
-        int32_t height = 0;
-        for (int k = 0; k < 3; k++) {
-            p->term[t][k] = within(p->term[t][k], TERM_LIMIT);
-            height += p->term[t][k] * s->normal[k];
-        }
-        p->height[t] = height >> PMESH_NORMAL_BITS;
-    }
+    pmesh_star_centres(s, term[3], term[4]);
+    memset(term[5], 0, 3 * sizeof term[5]);
+    straight_on(c, s, by, ring->vertex[site->partner], site->beyond[0], p->base,
+                term[5]);
+    straight_on(c, s, by, ring->vertex[far], site->beyond[1], p->base, term[6]);
+    finish_terms(s, term, p);
 }
 
 /* ---- prediction --------------------------------------------------------- */
@@ -157,16 +270,10 @@ static uint8_t roughness(const pmesh_star *s)
 }
 
 /* The contexts: what is known of the ring's members. */
-static void classify(const pmesh_codec *c, const pmesh_star *s,
-                     const pmesh_ring *ring, uint32_t partner,
-                     uint32_t provisional, pmesh_prediction *p)
+static void classify(const pmesh_star *s, const pmesh_ring *ring, const walk *w,
+                     pmesh_prediction *p)
 {
-    uint32_t unknown = 0, irregular = 0;
-    for (uint32_t i = 0; i < ring->count; i++) {
-        const uint32_t y = ring->vertex[i];
-        irregular += c->degree[y] != 6;
-        unknown += y >= provisional && y != partner;
-    }
+    const uint32_t unknown = w->unknown, irregular = w->irregular;
     p->ring_class = ring_class(ring);
     p->unknown = (uint8_t)(unknown < 2 ? unknown : 2);
     p->irregular = (uint8_t)(irregular < PMESH_IRREGULAR ? irregular
@@ -181,16 +288,32 @@ static void classify(const pmesh_codec *c, const pmesh_star *s,
     }
 }
 
+/* Sums of weight x term, axis by axis. Weights have 20 bits, of which lanes
+ * take the last 12 apart. */
+static void add_up(const int32_t weight[LANES], int16_t term[3][LANES],
+                   int64_t sum[3])
+{
+    enum { LOW = 12 };
+    const quads first = quads_load(weight), last = quads_load(weight + QUADS);
+    const quads more = quads_right(first, LOW), more2 = quads_right(last, LOW);
+    const lanes high = lanes_within(more, more2);
+    const lanes low = lanes_within(quads_sub(first, quads_left(more, LOW)),
+                                   quads_sub(last, quads_left(more2, LOW)));
+    for (int k = 0; k < 3; k++) {
+        const lanes t = lanes_load(term[k]);
+        sum[k] = (int64_t)quads_total(quads_dot(high, t)) * (1 << LOW) +
+                 quads_total(quads_dot(low, t));
+    }
+}
+
 /* The mean and the weighted terms, within the bounds, as every vertex is. */
 static void add_terms(pmesh_prediction *p, const int32_t bounds[3])
 {
     const int32_t *along = p->fit[0].weight, *across = p->fit[1].weight;
-    int64_t sum[3] = { 0, 0, 0 }, height = 0;
-    for (int t = 0; t < PMESH_FIT_TERMS; t++) {
-        for (int k = 0; k < 3; k++)
-            sum[k] += (int64_t)along[t] * p->term[t][k];
+    int64_t sum[3], height = 0;
+    add_up(along, p->term, sum);
+    for (int t = 0; t < PMESH_FIT_TERMS; t++)
         height += (int64_t)(across[t] - along[t]) * p->height[t];
-    }
     for (int k = 0; k < 3; k++) {
         const int64_t by =
             (sum[k] + (height * p->normal[k] >> PMESH_NORMAL_BITS)) >>
@@ -205,19 +328,22 @@ static void add_terms(pmesh_prediction *p, const int32_t bounds[3])
 }
 
 void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
-                   const pmesh_ring *ring, uint32_t partner,
-                   const int32_t partner_position[3], uint32_t provisional,
-                   pmesh_prediction *out)
+                   const pmesh_site *site, const int32_t partner_position[3],
+                   uint32_t provisional, pmesh_prediction *out)
 {
     pmesh_star s;
-    if (!ring) {
+    walk w;
+    if (!site) {
         predict_blindly(partner_position, out);
         return;
     }
-    pmesh_star_make(&s, c, ring, partner_position);
+    const pmesh_ring *ring = &site->ring;
     memcpy(out->base, partner_position, sizeof out->base);
-    classify(c, &s, ring, partner, provisional, out);
-    make_terms(c, &s, ring, x, partner, out);
+    pmesh_star_make(&s, c, ring, out->base);
+    const scale by = make_scale(s.shift);
+    walk_ring(c, &s, &by, ring, x, out->base, provisional, &w);
+    make_terms(c, &s, site, &by, &w, out);
+    classify(&s, ring, &w, out);
     out->fit = c->models.predict[kind][out->ring_class][out->unknown];
     add_terms(out, c->bounds);
 }
@@ -247,79 +373,114 @@ static int64_t expected_square(const pmesh_prediction *p, uint32_t error)
     return e * e;
 }
 
-static void split_terms(const pmesh_prediction *p,
-                        int32_t along[PMESH_FIT_TERMS][3],
-                        int32_t across[PMESH_FIT_TERMS])
+/* Vectors, by axis, and their heights; the last one is the target. */
+typedef struct factors {
+    lanes along[3], across;
+} factors;
+
+/* height x normal; heights are below 2^16, so lanes take their last bit apart.
+ */
+static quads lifted(lanes half, lanes odd, lanes n, bool last)
 {
-    for (int t = 0; t < PMESH_FIT_TERMS; t++) {
-        across[t] = (int32_t)(p->height[t] >> FIT_DROP);
-        for (int k = 0; k < 3; k++)
-            along[t][k] =
-                (int32_t)((p->term[t][k] - (p->height[t] * p->normal[k] >>
-                                            PMESH_NORMAL_BITS)) >>
-                          FIT_DROP);
-    }
+    const lanes none = lanes_of(0);
+    return last ? quads_add(quads_last(half, odd, n, n),
+                            quads_last(half, none, n, none))
+                : quads_add(quads_first(half, odd, n, n),
+                            quads_first(half, none, n, none));
 }
 
-static void learn_along(const pmesh_prediction *p,
-                        int32_t f[PMESH_FIT_TERMS][3], const int32_t target[3],
+/* Less their heights vectors are below 2^15. */
+static lanes flattened(const int16_t *v, lanes half, lanes odd, int32_t normal)
+{
+    const lanes n = lanes_of((int16_t)normal), t = lanes_load(v);
+    const lanes one = lanes_of(1), none = lanes_of(0);
+    const quads first =
+        quads_sub(quads_first(t, none, one, none),
+                  quads_right(lifted(half, odd, n, false), PMESH_NORMAL_BITS));
+    const quads last =
+        quads_sub(quads_last(t, none, one, none),
+                  quads_right(lifted(half, odd, n, true), PMESH_NORMAL_BITS));
+    return lanes_within(quads_right(first, FIT_DROP),
+                        quads_right(last, FIT_DROP));
+}
+
+/* Height 7 and vector 7 of the prediction are made the target's before. */
+static factors make_factors(const pmesh_prediction *p)
+{
+    const quads first = quads_load(p->height);
+    const quads last = quads_load(p->height + QUADS);
+    const quads half = quads_right(first, 1), half2 = quads_right(last, 1);
+    const lanes halves = lanes_within(half, half2);
+    const lanes odd = lanes_within(quads_sub(first, quads_left(half, 1)),
+                                   quads_sub(last, quads_left(half2, 1)));
+    factors f = { .across = halves }; /* FIT_DROP is 1 */
+    for (int k = 0; k < 3; k++)
+        f.along[k] = flattened(p->term[k], halves, odd, p->normal[k]);
+    return f;
+}
+
+static void learn_along(const pmesh_prediction *p, const factors *f,
                         int32_t weight)
 {
     pmesh_sample s;
-    int32_t *pair = s.pair;
+    int16_t x[LANES], y[LANES], z[LANES];
+    const lanes none = lanes_of(0);
+    lanes_store(x, f->along[0]);
+    lanes_store(y, f->along[1]);
+    lanes_store(z, f->along[2]);
     for (int i = 0; i < PMESH_FIT_TERMS; i++) {
-        const int32_t *a = f[i];
-        for (int j = 0; j <= i; j++)
-            *pair++ = a[0] * f[j][0] + a[1] * f[j][1] + a[2] * f[j][2];
-        s.target[i] = a[0] * target[0] + a[1] * target[1] + a[2] * target[2];
+        const lanes a = lanes_of(x[i]), b = lanes_of(y[i]), d = lanes_of(z[i]);
+        quads_store(s.product[i],
+                    quads_add(quads_first(f->along[0], f->along[1], a, b),
+                              quads_first(f->along[2], none, d, none)));
+        quads_store(s.product[i] + QUADS,
+                    quads_add(quads_last(f->along[0], f->along[1], a, b),
+                              quads_last(f->along[2], none, d, none)));
     }
     pmesh_fit_learn(&p->fit[0], &s, weight, PULL_ALONG);
 }
 
-static void learn_across(const pmesh_prediction *p,
-                         const int32_t f[PMESH_FIT_TERMS], int32_t target,
+static void learn_across(const pmesh_prediction *p, const factors *f,
                          int32_t weight)
 {
     pmesh_sample s;
-    int32_t *pair = s.pair;
+    int16_t height[LANES];
+    const lanes none = lanes_of(0);
+    lanes_store(height, f->across);
     for (int i = 0; i < PMESH_FIT_TERMS; i++) {
-        for (int j = 0; j <= i; j++)
-            *pair++ = f[i] * f[j];
-        s.target[i] = f[i] * target;
+        const lanes h = lanes_of(height[i]);
+        quads_store(s.product[i], quads_first(f->across, none, h, none));
+        quads_store(s.product[i] + QUADS, quads_last(f->across, none, h, none));
     }
     pmesh_fit_learn(&p->fit[1], &s, weight, PULL_ACROSS);
 }
 
-void pmesh_predict_learn(const pmesh_prediction *p, const int32_t position[3],
+void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3],
                          uint32_t along, uint32_t across)
 {
-    int32_t f[PMESH_FIT_TERMS][3], h[PMESH_FIT_TERMS], target[3];
-    int64_t wanted[3], up = 0, error_up = 0, error = 0;
+    int64_t up = 0, error_up = 0, error = 0;
     if (!p->fit)
         return;
     for (int k = 0; k < 3; k++) {
         const int64_t to =
             pmesh_scale((int64_t)position[k] - p->base[k], p->shift);
         const int64_t off = limited(to - p->corrected[k], TERM_LIMIT);
-        wanted[k] = limited(to - p->mean[k], TERM_LIMIT);
-        up += wanted[k] * p->normal[k];
+        const int64_t wanted = limited(to - p->mean[k], TERM_LIMIT);
+        p->term[k][PMESH_FIT_TERMS] = (int16_t)wanted;
+        up += wanted * p->normal[k];
         error_up += off * p->normal[k];
         error += off * off;
     }
-    up >>= PMESH_NORMAL_BITS;
+    p->height[PMESH_FIT_TERMS] = (int32_t)(up >> PMESH_NORMAL_BITS);
     error_up >>= PMESH_NORMAL_BITS;
     const int64_t square_up = error_up * error_up >> 2 * FIT_DROP;
     const int64_t square_flat =
         limited((error >> 2 * FIT_DROP) - square_up, INT32_MAX);
-    for (int k = 0; k < 3; k++)
-        target[k] =
-            (int32_t)((wanted[k] - (up * p->normal[k] >> PMESH_NORMAL_BITS)) >>
-                      FIT_DROP);
-    split_terms(p, f, h);
-    learn_along(p, f, target,
+    const factors f = make_factors(p);
+    learn_along(p, &f,
                 sample_weight(expected_square(p, along) +
                               (square_flat > 0 ? square_flat : 0)));
-    learn_across(p, h, (int32_t)(up >> FIT_DROP),
+    learn_across(p, &f,
                  sample_weight(expected_square(p, across) / 2 + square_up));
 }
 
@@ -331,11 +492,11 @@ static void shift_ring(pmesh_codec *c, uint32_t start, const uint32_t by[3])
     do {
         last = pmesh_prev(h);
         for (int k = 0; k < 3; k++)
-            c->around[m->vertex[pmesh_next(h)]][k] += by[k];
+            c->near[m->vertex[pmesh_next(h)]].sum[k] += by[k];
         h = m->twin[last];
     } while (h != PMESH_NONE && h != start);
     for (int k = 0; k < 3 && h == PMESH_NONE; k++)
-        c->around[m->vertex[last]][k] += by[k];
+        c->near[m->vertex[last]].sum[k] += by[k];
 }
 
 static void shift_neighbours(pmesh_codec *c, uint32_t x, const uint32_t by[3])
@@ -360,7 +521,9 @@ void pmesh_place(pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
         shift_neighbours(c, x, by);
         return;
     }
-    for (uint32_t i = 0; i < ring->count; i++)
-        for (int k = 0; k < 3; k++)
-            c->around[ring->vertex[i]][k] += by[k];
+    const quads all = quads_triple((const int32_t *)by);
+    for (uint32_t i = 0; i < ring->count; i++) {
+        pmesh_near *near = &c->near[ring->vertex[i]];
+        pmesh_near_store(near, quads_add(pmesh_near_load(near), all));
+    }
 }

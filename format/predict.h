@@ -35,21 +35,49 @@ typedef struct pmesh_prediction {
     int shift;
     int32_t base[3];
     int32_t mean[3], corrected[3];
-    int32_t term[PMESH_FIT_TERMS][3], height[PMESH_FIT_TERMS];
+    int16_t term[3][PMESH_FIT_TERMS + 1]; /* by axis; behind them comes what */
+    int32_t height[PMESH_FIT_TERMS + 1];  /* they should have added up to */
 } pmesh_prediction;
 
-/* The position of x, whose ring is given; ring NULL: it is too large.
- * `partner` is the other vertex of its split, and `partner_position` what is
- * known of it; members of the ring from `provisional` on (by number) have no
- * final position yet. */
+enum {
+    PMESH_KEPT_RING = 8,                  /* rings up to this size are kept, */
+    PMESH_KEPT_SITE = 5 + PMESH_KEPT_RING /* in so many numbers */
+};
+
+/* Where a prediction is made: what it needs of connectivity. Walking there from
+ * half-edge to half-edge waits for memory, so it is kept for the second time.
+ */
+typedef struct pmesh_site {
+    pmesh_ring ring;  /* of one that was kept, without edges */
+    uint32_t partner; /* place in the ring; the last if it is not there */
+    /* Opposite of x in the rings of the partner and of the member that lies
+     * opposite of the partner: two vertices, maybe the same, or PMESH_NONE. */
+    uint32_t beyond[2][2];
+} pmesh_site;
+
+/* False if the ring of x is too large. */
+bool pmesh_site_find(const pmesh_codec *c, uint32_t x, uint32_t partner,
+                     pmesh_site *s);
+
+/* `kept` gives the site back, or false if it was NULL or had a larger ring. */
+void pmesh_site_keep(const pmesh_site *s, uint32_t kept[PMESH_KEPT_SITE]);
+bool pmesh_site_kept(const uint32_t kept[PMESH_KEPT_SITE], pmesh_site *s);
+
+/* Fetches what prediction will read. */
+void pmesh_site_prefetch(const pmesh_codec *c,
+                         const uint32_t kept[PMESH_KEPT_SITE]);
+
+/* The position of x at its site; NULL: the ring is too large. Of its partner,
+ * the other vertex of its split, this position is known; members of the ring
+ * from `provisional` on (by number) have no final position yet; no partner is.
+ */
 void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
-                   const pmesh_ring *ring, uint32_t partner,
-                   const int32_t partner_position[3], uint32_t provisional,
-                   pmesh_prediction *out);
+                   const pmesh_site *site, const int32_t partner_position[3],
+                   uint32_t provisional, pmesh_prediction *out);
 
 /* The position turned out to be this, where errors of `along` and `across`
  * (1/16 steps) were expected. */
-void pmesh_predict_learn(const pmesh_prediction *p, const int32_t position[3],
+void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3],
                          uint32_t along, uint32_t across);
 
 /* Moves x, whose ring is given (NULL: too large), to a position and corrects

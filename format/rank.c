@@ -3,15 +3,17 @@
 
 #include <string.h>
 
+#include "format/predict.h"
+
 enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS };
 
 uint64_t pmesh_rank_scratch(const pmesh_codec_sizes *sizes)
 {
     const uint64_t splits = sizes->block_splits, wedges = sizes->block_wedges;
-    /* The largest user: four numbers a face, three a split, or a wedge's map,
-     * its three numbers and its values. */
+    /* The largest user: four numbers a face, a split's site (predict.h), or a
+     * wedge's map, its three numbers and its values. */
     const uint64_t for_faces = 4 * pmesh_block_faces(sizes);
-    const uint64_t for_splits = 3 * splits;
+    const uint64_t for_splits = PMESH_KEPT_SITE * splits;
     const uint64_t for_wedges = wedges * (4 + sizes->value_count);
     uint64_t most = for_faces > for_wedges ? for_faces : for_wedges;
     most = most > for_splits ? most : for_splits;
@@ -75,21 +77,32 @@ static void permute_positions(int32_t (*items)[3], uint32_t count,
         memcpy(items[i], copy[order[i]], sizeof *items);
 }
 
+static void permute_near(pmesh_near *items, uint32_t count,
+                         const uint32_t *order, uint32_t *scratch)
+{
+    pmesh_near *copy = (pmesh_near *)scratch;
+    memcpy(copy, items, count * sizeof *items);
+    for (uint32_t i = 0; i < count; i++)
+        items[i] = copy[order[i]];
+}
+
 /* Names the children by rank in every half-edge that starts at them. */
 static void rename_children(pmesh_codec *c)
 {
     pmesh_mesh *m = &c->mesh;
     const uint32_t first = c->block.vertex, n = c->block.vertex_count;
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t start = m->first[first + c->child_order[i]];
+    uint32_t *rank = c->scratch;
+    for (uint32_t i = 0; i < n; i++)
+        rank[c->child_order[i]] = i;
+    for (uint32_t k = 0; k < n; k++) { /* in coding order lie the faces */
+        uint32_t start = m->first[first + k];
         for (uint32_t h = start; h != PMESH_NONE;
              h = pmesh_corner_next(m, &start, h))
-            m->vertex[h] = first + i;
+            m->vertex[h] = first + rank[k];
     }
     permute(m->first + first, n, 1, c->child_order, c->scratch);
     permute(m->parent + first, n, 1, c->child_order, c->scratch);
-    permute(c->degree + first, n, 1, c->child_order, c->scratch);
-    permute(c->around[first], n, 3, c->child_order, c->scratch);
+    permute_near(c->near + first, n, c->child_order, c->scratch);
     permute_positions(m->position + first, n, c->child_order, c->scratch);
     if (c->sizes.moves)
         permute_positions(c->unsplit, n, c->child_order, c->scratch);
@@ -103,9 +116,8 @@ static void order_faces(pmesh_codec *c)
     uint32_t face = 0, *start = c->scratch;
     for (uint32_t i = 0; i < b->vertex_count; i++) {
         const uint32_t k = c->child_order[i];
-        const uint32_t end = k + 1 < b->vertex_count
-                                 ? c->child_face[k + 1]
-                                 : b->face + b->face_count;
+        const uint32_t end = k + 1 < b->vertex_count ? c->child_face[k + 1]
+                                                     : b->face + b->face_count;
         start[i] = b->face + face;
         for (uint32_t f = c->child_face[k]; f < end; f++)
             c->face_order[face++] = f - b->face;

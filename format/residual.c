@@ -198,7 +198,7 @@ static void learn_errors(const gauss *g, const int64_t d[3], pmesh_mean *along,
 }
 
 bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
-                         const pmesh_prediction *p, int32_t position[3])
+                         pmesh_prediction *p, int32_t position[3])
 {
     pmesh_models *m = &c->models;
     pmesh_mean *along =

@@ -16,6 +16,6 @@
 /* Codes `position` (in and out) and learns from the outcome; `which` is 0 for
  * a child and 1 for a moved parent. Decoding: false if it leaves the bounds. */
 bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
-                         const pmesh_prediction *p, int32_t position[3]);
+                         pmesh_prediction *p, int32_t position[3]);
 
 #endif

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "format/star.h"
 
-#include <string.h>
-
 enum {
     SUM_BITS = 15,   /* of a sum of face normals, before it is normalised */
     WEIGHT_BITS = 11 /* of what centres are weighted by */
@@ -33,106 +31,129 @@ uint32_t pmesh_isqrt(uint32_t value)
     return 0;
 }
 
-static int32_t size_of(int32_t value)
-{
-    return value < 0 ? -value : value;
-}
-
 static uint32_t padded(uint32_t count)
 {
-    return (count + PMESH_STAR_LANES - 1) / PMESH_STAR_LANES * PMESH_STAR_LANES;
+    return (count + LANES - 1) / LANES * LANES;
 }
 
 /* ---- points and spokes ----------------------------------------------------
  */
 
+/* The members relative to `base`, then zeros; returns the bitwise or of 1 and
+ * all sizes. */
+static uint32_t gather(const pmesh_codec *c, const pmesh_ring *ring,
+                       const int32_t base[3], quads d[PMESH_STAR_ROOM])
+{
+    const int32_t(*position)[3] = (const int32_t(*)[3])c->mesh.position;
+    const uint32_t n = ring->count, end = padded(n + 1);
+    const quads from = quads_triple(base);
+    quads all = quads_of(1);
+    for (uint32_t i = 0; i < n; i++) {
+        d[i] = quads_sub(quads_triple(position[ring->vertex[i]]), from);
+        all = quads_or(all, quads_size(d[i]));
+    }
+    for (uint32_t i = n; i < end; i++)
+        d[i] = quads_of(0);
+    return quads_any(all);
+}
+
 static void place_points(pmesh_star *s, const pmesh_codec *c,
                          const pmesh_ring *ring, const int32_t base[3])
 {
-    int32_t d[3][PMESH_STAR_ROOM];
+    quads d[PMESH_STAR_ROOM],
+        sum[3] = { quads_of(0), quads_of(0), quads_of(0) };
     const uint32_t n = s->count, end = padded(n + 1);
-    uint32_t all = 1;
-    for (uint32_t i = 0; i < n; i++) {
-        const int32_t *p = c->mesh.position[ring->vertex[i]];
-        for (int k = 0; k < 3; k++) {
-            d[k][i] = p[k] - base[k];
-            all |= (uint32_t)size_of(d[k][i]);
-        }
-    }
+    const uint32_t all = gather(c, ring, base, d);
     s->shift = PMESH_STAR_BITS - (int)pmesh_bit_length(all);
     const int up = s->shift > 0 ? s->shift : 0, down = up - s->shift;
-    for (int k = 0; k < 3; k++) {
-        int32_t sum = 0;
-        for (uint32_t i = n; i < end; i++)
-            d[k][i] = 0;
-        for (uint32_t i = 0; i < end; i++) {
-            const int32_t x = d[k][i] * (1 << up) >> down;
-            s->point[k][i] = (int16_t)x;
-            sum += x;
+    for (uint32_t i = 0; i < end; i += LANES) {
+        lanes x[3];
+        for (uint32_t j = 0; j < LANES; j++)
+            s->row[i + j] = quads_right(quads_left(d[i + j], up), down);
+        lanes_columns(s->row + i, x);
+        for (int k = 0; k < 3; k++) {
+            lanes_store(s->point[k] + i, x[k]);
+            sum[k] = quads_add(sum[k], quads_dot(x[k], lanes_of(1)));
         }
-        s->mean[k] = pmesh_share(sum, n);
     }
+    for (int k = 0; k < 3; k++)
+        s->mean[k] = pmesh_share(quads_total(sum[k]), n);
 }
 
-static int16_t larger(int16_t a, int16_t b)
+/* All bits set in a ring's lanes, no bit in those behind it. */
+#define X8(x)  x, x, x, x, x, x, x, x
+#define X24(x) X8(x), X8(x), X8(x)
+static const int16_t mask[] = { X24(-1), X24(-1), X24(0), X24(0), X8(0) };
+
+/* What counts of lanes i .. i + 7. */
+static lanes ring_mask(const pmesh_star *s, uint32_t i)
 {
-    return a > b ? a : b;
+    return lanes_load(mask + PMESH_MAX_RING - s->count + i);
 }
 
-static int16_t short_size(int16_t value)
+/* As pmesh_rough_length(). */
+static lanes rough_lengths(lanes x, lanes y, lanes z)
 {
-    return larger(value, (int16_t)-value);
+    x = lanes_size(x);
+    y = lanes_size(y);
+    z = lanes_size(z);
+    const lanes most = lanes_max(lanes_max(x, y), z);
+    const lanes rest = lanes_sub(lanes_add(lanes_add(x, y), z), most);
+    return lanes_add(most,
+                     lanes_add(lanes_right(rest, 2), lanes_right(rest, 3)));
 }
 
 static void place_spokes(pmesh_star *s)
 {
     const uint32_t n = s->count, end = padded(n + 1);
-    int32_t total = 0;
+    quads sum = quads_of(0);
+    for (uint32_t i = 0; i < end; i += LANES) {
+        const lanes member = ring_mask(s, i);
+        lanes spoke[3];
+        for (int k = 0; k < 3; k++) {
+            spoke[k] = lanes_and(lanes_sub(lanes_load(s->point[k] + i),
+                                           lanes_of((int16_t)s->mean[k])),
+                                 member);
+            lanes_store(s->spoke[k] + i, spoke[k]);
+        }
+        const lanes length = rough_lengths(spoke[0], spoke[1], spoke[2]);
+        lanes_store(s->length + i, length);
+        sum = quads_add(sum, quads_dot(length, lanes_of(1)));
+    }
     for (int k = 0; k < 3; k++) {
-        const int16_t mean = (int16_t)s->mean[k];
-        int16_t *spoke = s->spoke[k];
-        for (uint32_t i = 0; i < end; i++)
-            spoke[i] = (int16_t)(s->point[k][i] - mean);
-        for (uint32_t i = n; i < PMESH_STAR_ROOM && i <= end; i++)
-            spoke[i] = 0;
-        spoke[n] = s->open ? 0 : spoke[0];
+        s->spoke[k][n] = s->open ? 0 : s->spoke[k][0];
+        s->spoke[k][end] = 0;
     }
-    for (uint32_t i = 0; i < end; i++) {
-        const int16_t x = short_size(s->spoke[0][i]);
-        const int16_t y = short_size(s->spoke[1][i]);
-        const int16_t z = short_size(s->spoke[2][i]);
-        const int16_t most = larger(larger(x, y), z);
-        const int16_t rest = (int16_t)(x + y + z - most);
-        s->length[i] = (int16_t)(most + (rest >> 2) + (rest >> 3));
-    }
-    s->length[n] = 0;
-    for (uint32_t i = 0; i < n; i++)
-        total += s->length[i];
-    s->size = pmesh_share(total, n);
+    s->size = pmesh_share(quads_total(sum), n);
 }
 
 /* ---- normal and height ----------------------------------------------------
  */
 
-static void cross(uint32_t count, const int16_t *restrict a,
-                  const int16_t *restrict b, int32_t *restrict out)
+/* One coordinate of the normals of LANES faces, from the others of spokes;
+ * returns their sum. Behind the last face they are 0. */
+static int32_t cross(const int16_t *a, const int16_t *b, int32_t *face)
 {
-    for (uint32_t i = 0; i < count; i++)
-        out[i] = a[i] * b[i + 1] - b[i] * a[i + 1];
+    const lanes x = lanes_load(a), next_x = lanes_load(a + 1);
+    const lanes y = lanes_load(b), next_y = lanes_load(b + 1);
+    const lanes back = lanes_sub(lanes_of(0), next_x);
+    const quads first = quads_first(x, y, next_y, back);
+    const quads last = quads_last(x, y, next_y, back);
+    quads_store(face, first);
+    quads_store(face + QUADS, last);
+    return quads_total(quads_add(first, last)); /* 8 x 2^27 at most */
 }
 
 /* The faces' normals, and their sum scaled to length 2^14. */
 static void find_normal(pmesh_star *s)
 {
-    const uint32_t end = padded(s->count);
     int64_t sum[3];
     uint64_t all = 0;
     for (int k = 0; k < 3; k++) {
-        int32_t *face = s->face[k];
-        cross(end, s->spoke[(k + 1) % 3], s->spoke[(k + 2) % 3], face);
+        const int16_t *a = s->spoke[(k + 1) % 3], *b = s->spoke[(k + 2) % 3];
         sum[k] = 0;
-        for (uint32_t i = 0; i < s->face_count; i++)
-            sum[k] += face[i];
+        for (uint32_t i = 0; i < s->count; i += LANES)
+            sum[k] += cross(a + i, b + i, s->face[k] + i);
         all |= (uint64_t)(sum[k] < 0 ? -sum[k] : sum[k]);
     }
     const unsigned bits = pmesh_bit_length(all);
@@ -148,17 +169,28 @@ static void find_normal(pmesh_star *s)
         s->normal[k] = (int32_t)(sum[k] * per >> (29 - PMESH_NORMAL_BITS));
 }
 
+static quads heights(quads flat, quads up)
+{
+    return quads_right(quads_size(quads_add(flat, up)), PMESH_NORMAL_BITS);
+}
+
 static void find_height(pmesh_star *s)
 {
-    const int16_t x = (int16_t)s->normal[0], y = (int16_t)s->normal[1];
-    const int16_t z = (int16_t)s->normal[2];
-    int32_t sum = 0;
-    for (uint32_t i = 0; i < s->count; i++) {
-        const int32_t h =
-            s->spoke[0][i] * x + s->spoke[1][i] * y + s->spoke[2][i] * z;
-        sum += size_of(h) >> PMESH_NORMAL_BITS;
+    const lanes none = lanes_of(0), nx = lanes_of((int16_t)s->normal[0]);
+    const lanes ny = lanes_of((int16_t)s->normal[1]);
+    const lanes nz = lanes_of((int16_t)s->normal[2]);
+    quads sum = quads_of(0);
+    for (uint32_t i = 0; i < s->count; i += LANES) {
+        const lanes member = ring_mask(s, i);
+        const lanes x = lanes_and(lanes_load(s->spoke[0] + i), member);
+        const lanes y = lanes_and(lanes_load(s->spoke[1] + i), member);
+        const lanes z = lanes_and(lanes_load(s->spoke[2] + i), member);
+        sum = quads_add(sum, heights(quads_first(x, y, nx, ny),
+                                     quads_first(z, none, nz, none)));
+        sum = quads_add(sum, heights(quads_last(x, y, nx, ny),
+                                     quads_last(z, none, nz, none)));
     }
-    s->height = pmesh_share(sum, s->count);
+    s->height = pmesh_share(quads_total(sum), s->count);
 }
 
 void pmesh_star_make(pmesh_star *s, const pmesh_codec *c,
@@ -188,34 +220,62 @@ static void centre(const int32_t sum[3], int32_t weight, int32_t times,
 
 static void centre_of_spokes(const pmesh_star *s, int32_t out[3])
 {
-    int32_t sum[3] = { 0, 0, 0 }, weight = 0;
-    for (uint32_t i = 0; i < s->count; i++) {
-        const int32_t w = s->length[i] >> (PMESH_STAR_BITS + 2 - WEIGHT_BITS);
+    quads sum[3] = { quads_of(0), quads_of(0), quads_of(0) };
+    quads weight = quads_of(0);
+    int32_t total[3];
+    for (uint32_t i = 0; i < s->count; i += LANES) {
+        const lanes w = lanes_right(lanes_load(s->length + i),
+                                    PMESH_STAR_BITS + 2 - WEIGHT_BITS);
         for (int k = 0; k < 3; k++)
-            sum[k] += w * s->spoke[k][i];
-        weight += w;
+            sum[k] =
+                quads_add(sum[k], quads_dot(w, lanes_load(s->spoke[k] + i)));
+        weight = quads_add(weight, quads_dot(w, lanes_of(1)));
     }
-    centre(sum, weight, 1, out);
+    for (int k = 0; k < 3; k++)
+        total[k] = quads_total(sum[k]);
+    centre(total, quads_total(weight), 1, out);
 }
 
+/* As pmesh_rough_length(); below 2^28. */
+static quads face_lengths(const pmesh_star *s, uint32_t i)
+{
+    const quads x = quads_size(quads_load(s->face[0] + i));
+    const quads y = quads_size(quads_load(s->face[1] + i));
+    const quads z = quads_size(quads_load(s->face[2] + i));
+    const quads most = quads_max(quads_max(x, y), z);
+    const quads rest = quads_sub(quads_add(quads_add(x, y), z), most);
+    return quads_add(most,
+                     quads_add(quads_right(rest, 2), quads_right(rest, 3)));
+}
+
+/* Behind the last face all lengths are 0. */
 static void centre_of_area(const pmesh_star *s, int32_t out[3])
 {
-    int32_t length[PMESH_STAR_ROOM], sum[3] = { 0, 0, 0 }, weight = 0;
-    uint32_t all = 0;
-    for (uint32_t i = 0; i < s->face_count; i++) {
-        const int64_t face[3] = { s->face[0][i], s->face[1][i], s->face[2][i] };
-        length[i] = (int32_t)pmesh_rough_length(face);
-        all |= (uint32_t)length[i];
+    int32_t length[PMESH_STAR_ROOM], total[3];
+    quads sum[3] = { quads_of(0), quads_of(0), quads_of(0) };
+    quads all = quads_of(0), weight = quads_of(0);
+    const uint32_t end = padded(s->count);
+    for (uint32_t i = 0; i < end; i += QUADS) {
+        const quads l = face_lengths(s, i);
+        quads_store(length + i, l);
+        all = quads_or(all, l);
     }
-    const unsigned bits = pmesh_bit_length(all);
-    const unsigned drop = bits > WEIGHT_BITS ? bits - WEIGHT_BITS : 0;
-    for (uint32_t i = 0; i < s->face_count; i++) {
-        const int32_t w = length[i] >> drop;
-        for (int k = 0; k < 3; k++)
-            sum[k] += w * (s->spoke[k][i] + s->spoke[k][i + 1]);
-        weight += w;
+    const unsigned bits = pmesh_bit_length(quads_any(all));
+    const int drop = bits > WEIGHT_BITS ? (int)(bits - WEIGHT_BITS) : 0;
+    for (uint32_t i = 0; i < end; i += LANES) {
+        const lanes w =
+            lanes_within(quads_right(quads_load(length + i), drop),
+                         quads_right(quads_load(length + i + QUADS), drop));
+        for (int k = 0; k < 3; k++) {
+            const lanes both = lanes_add(lanes_load(s->spoke[k] + i),
+                                         lanes_load(s->spoke[k] + i + 1));
+            sum[k] = quads_add(sum[k], quads_dot(w, both));
+        }
+        weight = quads_add(weight, quads_dot(w, lanes_of(1)));
     }
-    centre(sum, weight, 3, out);
+    for (int k = 0; k < 3; k++)
+        total[k] = quads_total(sum[k]);
+    centre(total, quads_total(weight), 3, out);
 }
 
 void pmesh_star_centres(const pmesh_star *s, int32_t area[3], int32_t spokes[3])

@@ -8,12 +8,12 @@
 #define PMESH_STAR_H
 
 #include "format/codec.h"
+#include "format/lanes.h"
 
 enum {
     PMESH_STAR_BITS = 12,
-    PMESH_NORMAL_BITS = 14, /* a normal has length 2^14 */
-    PMESH_STAR_LANES = 8,   /* loops run over a multiple, for SIMD's sake */
-    PMESH_STAR_ROOM = PMESH_MAX_RING + PMESH_STAR_LANES
+    PMESH_NORMAL_BITS = 14,              /* a normal has length 2^14 */
+    PMESH_STAR_ROOM = PMESH_MAX_RING + 9 /* loops run over eights of them */
 };
 
 /* By coordinate, then member. Behind the last member come zeros, but the first
@@ -27,6 +27,7 @@ typedef struct pmesh_star {
     int32_t mean[3];
     int32_t normal[3]; /* zero if there is none */
     int16_t point[3][PMESH_STAR_ROOM];
+    quads row[PMESH_STAR_ROOM]; /* the points once more, each by itself */
     int16_t spoke[3][PMESH_STAR_ROOM]; /* from the mean; below 2^13 */
     int16_t length[PMESH_STAR_ROOM];   /* of spokes, about */
     int32_t face[3][PMESH_STAR_ROOM];  /* spoke i x spoke i + 1 */

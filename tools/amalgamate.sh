@@ -132,7 +132,8 @@ TEXT
             return
         seen[file]
         while ((getline line < file) > 0) {
-            if (line ~ /SPDX-License/ || line ~ /^#include </)
+            if (line ~ /SPDX-License/ ||
+                (line ~ /^#include </ && line !~ /emmintrin/))
                 continue
             if (line ~ /^#include "/) {
                 target = line

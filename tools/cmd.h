@@ -29,6 +29,7 @@ int cmd_verify(int argc, char **argv);
 int cmd_compare(int argc, char **argv);
 int cmd_sheet(int argc, char **argv);
 int cmd_simplify(int argc, char **argv);
+int cmd_session(int argc, char **argv);
 int cmd_stats(int argc, char **argv);
 int cmd_plot(int argc, char **argv);
 int cmd_guide(int argc, char **argv);

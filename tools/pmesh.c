@@ -32,6 +32,7 @@ static const subcommand subcommands[] = {
     { "sheet", cmd_sheet, "draw the levels of a .pmesh into a picture" },
     { "plot", cmd_plot, "draw bytes against distance into a diagram" },
     { "stats", cmd_stats, "print what contractions cost at a size" },
+    { "session", cmd_session, "simplify back and forth by a script" },
     { "plan", cmd_plan, "say how much of a .pmesh to load" },
     { "view", cmd_view, "make a page that shows a .pmesh in a browser" },
     { "sample", cmd_sample, "write a mesh to try things with" },

@@ -12,10 +12,10 @@ for option in help -h --help; do
     ok "pmesh $option prints on stdout only" silent
 done
 for command in bake extract simplify info verify compare guide sheet \
-    plot stats sample; do
+    plot stats session sample; do
     ok "the overview lists $command" out "^  $command "
 done
-for command in bake extract simplify info verify guide plot stats; do
+for command in bake extract simplify info verify guide plot stats session; do
     check "$command -h" 0 $command -h
     ok "$command -h lists its options" out '^Options:'
     short=$(size "$work/out")

@@ -321,8 +321,8 @@ static bool counts_hold(const pmesh_codec *c)
         }
     }
     for (uint32_t v = 0; v < m->vertex_count; v++)
-        hold &= sum[v][3] == c->degree[v] &&
-                memcmp(sum[v], c->around[v], sizeof c->around[v]) == 0;
+        hold &= sum[v][3] == c->near[v].degree &&
+                memcmp(sum[v], c->near[v].sum, sizeof c->near[v].sum) == 0;
     free(sum);
     return hold;
 }

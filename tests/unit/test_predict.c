@@ -52,7 +52,7 @@ TEST(shares_of_a_ring_are_quotients)
 static void make_sample(uint64_t *state, const int32_t weight[PMESH_FIT_TERMS],
                         pmesh_sample *out)
 {
-    int32_t term[PMESH_FIT_TERMS], *pair = out->pair;
+    int32_t term[PMESH_FIT_TERMS];
     int64_t target = 0;
     for (int t = 0; t < PMESH_FIT_TERMS; t++) {
         term[t] = (int32_t)(next_random(state) % 4096) - 2048;
@@ -60,15 +60,15 @@ static void make_sample(uint64_t *state, const int32_t weight[PMESH_FIT_TERMS],
     }
     target >>= 16;
     for (int t = 0; t < PMESH_FIT_TERMS; t++) {
-        for (int j = 0; j <= t; j++)
-            *pair++ = term[t] * term[j];
-        out->target[t] = (int32_t)(term[t] * target);
+        for (int j = 0; j < PMESH_FIT_TERMS; j++)
+            out->product[t][j] = term[t] * term[j];
+        out->product[t][PMESH_FIT_TERMS] = (int32_t)(term[t] * target);
     }
 }
 
 TEST(a_fit_finds_the_weights_of_its_samples)
 {
-    static const int32_t wanted[PMESH_FIT_TERMS] = { 30000, -70000, 0,    65536,
+    static const int32_t wanted[PMESH_FIT_TERMS] = { 30000, -70000, 0,   65536,
                                                      -1000, 12345,  9999 };
     static const int16_t start[2 * PMESH_FIT_TERMS] = { 256, 0, -256, 0 };
     uint64_t state = 7;
@@ -93,13 +93,11 @@ TEST(a_fit_stays_within_its_bounds)
     pmesh_fit_init(&fit, start, 2);
     for (int i = 0; i < 5000; i++) {
         const int32_t extreme = i % 3 ? (1 << 28) - 1 : -(1 << 28) + 1;
-        for (int k = 0; k < PMESH_FIT_PAIRS; k++)
-            sample.pair[k] = next_random(&state) & 1 ? extreme : 1;
-        int k = 0;
         for (int t = 0; t < PMESH_FIT_TERMS; t++) {
-            sample.pair[k] = (1 << 28) - 1; /* a square */
-            sample.target[t] = extreme;
-            k += t + 2;
+            for (int j = 0; j < t; j++)
+                sample.product[t][j] = next_random(&state) & 1 ? extreme : 1;
+            sample.product[t][t] = (1 << 28) - 1; /* a square */
+            sample.product[t][PMESH_FIT_TERMS] = extreme;
         }
         pmesh_fit_learn(&fit, &sample, 1 << 18, 1 << 24);
         for (int t = 0; t < PMESH_FIT_TERMS; t++)
