@@ -292,12 +292,14 @@ static void sum_both(const enc_pricing *p, const enc_surface *s,
 {
     sum_about_midpoint(&ends[0], &ends[1], half, shape);
     *sum = *shape;
-    if (p->looks.count == 0 && !p->factor)
+    const bool neutral =
+        factor_of(p, pair->child) == 1 && factor_of(p, pair->parent) == 1;
+    if (p->looks.count == 0 && neutral)
         return;
     enc_looks_add_child(&p->looks, s, pair->child, now, &ends[0]);
     if (parent_moves(p, s, pair))
         enc_looks_add_parent(&p->looks, s, pair->parent, now, &ends[1]);
-    if (p->factor) {
+    if (!neutral) {
         scale(&ends[0], factor_of(p, pair->child));
         scale(&ends[1], factor_of(p, pair->parent));
     }
