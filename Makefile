@@ -31,7 +31,7 @@ cxx_flags := -std=c++17 $(shared_flags) -Wall -Wextra $(CPPFLAGS) $(CXXFLAGS)
 link_flags := -pthread $(filter -fsanitize=%,$(opt_$(config))) $(LDFLAGS)
 posix := -D_POSIX_C_SOURCE=200809L
 cgal := -isystem /usr/include/eigen3 -Wno-maybe-uninitialized
-bridge_libs := -ldraco -lmeshoptimizer
+bridge_libs := -ldraco -lmeshoptimizer -lz
 
 units ?= $(wildcard tests/unit/*.c)
 obj = $(patsubst %,$(B)/%.o,$(basename $(1)))

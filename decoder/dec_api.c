@@ -40,8 +40,7 @@ pmesh_status pmesh_decoder_create(pmesh_decoder **out,
         return PMESH_E_MEMORY;
     dec->allocator = c.allocator;
     dec->config = c;
-    dec->error = (pmesh_decode_error){ PMESH_OK, 0, "" };
-    dec->hash = PMESH_HASH_START;
+    dec_frame_start(&dec->frame);
     *out = dec;
     return PMESH_OK;
 }
@@ -57,7 +56,7 @@ void pmesh_decoder_destroy(pmesh_decoder *dec)
 
 pmesh_decode_error pmesh_decoder_error(const pmesh_decoder *dec)
 {
-    return dec->error;
+    return dec->frame.error;
 }
 
 static float measured(const pmesh_decoder *dec, uint32_t units)
@@ -82,7 +81,8 @@ static pmesh_level level_of(const pmesh_decoder *dec, uint32_t i)
 pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
 {
     if (!dec->has_header)
-        return dec->error.status < 0 ? dec->error.status : PMESH_NEED_DATA;
+        return dec->frame.error.status < 0 ? dec->frame.error.status
+                                           : PMESH_NEED_DATA;
     const pmesh_header_chunk *h = &dec->header;
     *out = (pmesh_header){
         .format_version = PMESH_FORMAT_VERSION,
@@ -117,11 +117,11 @@ pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
 pmesh_progress_state pmesh_decoder_progress(const pmesh_decoder *dec)
 {
     return (pmesh_progress_state){
-        .bytes = dec->whole,
+        .bytes = dec->frame.whole,
         .faces = dec->has_base ? dec_faces_at(dec, dec->view.decoded) : 0,
         .levels = dec->levels,
         .exact_vertices = dec->exact.count,
-        .complete = dec->stage == DEC_END && dec->error.status >= 0
+        .complete = dec->frame.stage == DEC_END && dec->frame.error.status >= 0
     };
 }
 

@@ -8,9 +8,15 @@
 #include "decoder/dec_internal.h"
 #include "format/alloc.h"
 
+static pmesh_status fail(pmesh_decoder *dec, pmesh_status status,
+                         const char *rule)
+{
+    return dec_frame_fail(&dec->frame, status, rule);
+}
+
 static pmesh_status corrupt(pmesh_decoder *dec, const char *rule)
 {
-    return dec_fail(dec, PMESH_E_CORRUPT, rule);
+    return fail(dec, PMESH_E_CORRUPT, rule);
 }
 
 static bool all_levels(const pmesh_decoder *dec)
@@ -25,43 +31,45 @@ static bool lacks_exact(const pmesh_decoder *dec)
            dec->exact.count < dec->header.sizes.vertices;
 }
 
-pmesh_status dec_chunk_begin(pmesh_decoder *dec)
+static pmesh_status chunk_begin(void *self)
 {
-    const uint8_t type = dec->type;
-    dec->skipping = type >= PMESH_CHUNK_SKIPPABLE;
+    pmesh_decoder *dec = (pmesh_decoder *)self;
+    const uint8_t type = dec->frame.type;
     if (type == PMESH_CHUNK_HEADER) {
+        dec->frame.to = dec->small;
         if (dec->has_header)
             return corrupt(dec, "SPEC 5.2: a second header");
-        return dec->size <= PMESH_MAX_HEADER_SIZE
+        return dec->frame.size <= PMESH_MAX_HEADER_SIZE
                    ? PMESH_OK
                    : corrupt(dec, "SPEC 5.3: the header is too large");
     }
     if (!dec->has_header && type == PMESH_CHUNK_SCENE)
-        return dec_fail(dec, PMESH_E_UNSUPPORTED,
-                        "SPEC 11.1: a scene of meshes: see pmesh_scene.h");
+        return fail(dec, PMESH_E_UNSUPPORTED,
+                    "SPEC 11.1: a scene of meshes: see pmesh_scene.h");
     if (!dec->has_header)
         return corrupt(dec, "SPEC 5.2: the first chunk is not the header");
-    if (dec->skipping)
+    if (type >= PMESH_CHUNK_SKIPPABLE)
         return PMESH_OK;
+    dec->frame.to = dec->payload;
     if (type > PMESH_CHUNK_POSITIONS || type == 0)
-        return dec_fail(dec, PMESH_E_VERSION,
-                        "SPEC 5.2: an unknown critical chunk");
+        return fail(dec, PMESH_E_VERSION,
+                    "SPEC 5.2: an unknown critical chunk");
     if (type == PMESH_CHUNK_NAMES)
         return !dec->has_base && !dec->has_names &&
-                       dec->size == dec->header.names_size
+                       dec->frame.size == dec->header.names_size
                    ? PMESH_OK
                    : corrupt(dec, "SPEC 5.2: a names chunk out of place");
     if (type == PMESH_CHUNK_BASE && dec->has_base)
         return corrupt(dec, "SPEC 5.2: a second base mesh");
     if (type == PMESH_CHUNK_BASE && dec->header.base_coder &&
         !dec->config.base_decoder)
-        return dec_fail(dec, PMESH_E_UNSUPPORTED,
-                        "SPEC 6.2: a Draco base mesh, and the decoder was "
-                        "given no base_decoder");
+        return fail(dec, PMESH_E_UNSUPPORTED,
+                    "SPEC 6.2: a Draco base mesh, and the decoder was "
+                    "given no base_decoder");
     if (type != PMESH_CHUNK_BASE && !dec->has_base)
         return corrupt(dec, "SPEC 5.2: a chunk before the base mesh");
     if (type == PMESH_CHUNK_END)
-        return all_levels(dec) && !lacks_exact(dec) && dec->size == 0
+        return all_levels(dec) && !lacks_exact(dec) && dec->frame.size == 0
                    ? PMESH_OK
                    : corrupt(dec, "SPEC 5.2: the end comes too early");
     if (type == PMESH_CHUNK_POSITIONS && !(all_levels(dec) && lacks_exact(dec)))
@@ -69,7 +77,7 @@ pmesh_status dec_chunk_begin(pmesh_decoder *dec)
     if ((type == PMESH_CHUNK_BLOCK || type == PMESH_CHUNK_BLOCK_LAST) &&
         all_levels(dec))
         return corrupt(dec, "SPEC 5.2: more levels than the header declares");
-    return dec->size <= dec->header.chunk_size
+    return dec->frame.size <= dec->header.chunk_size
                ? PMESH_OK
                : corrupt(dec, "SPEC 5.2: a chunk larger than the header "
                               "declares");
@@ -107,11 +115,11 @@ static pmesh_status allocate(pmesh_decoder *dec)
     if (h->sizes.faces > dec->config.max_faces ||
         dec->block_size > dec->config.max_memory ||
         dec->block_size > SIZE_MAX)
-        return dec_fail(dec, PMESH_E_LIMIT,
-                        "the mesh is larger than the decoder's limits");
+        return fail(dec, PMESH_E_LIMIT,
+                    "the mesh is larger than the decoder's limits");
     uint8_t *at = pmesh_alloc(&dec->allocator, 1, (size_t)dec->block_size);
     if (!at)
-        return dec_fail(dec, PMESH_E_MEMORY, "no memory for the mesh");
+        return fail(dec, PMESH_E_MEMORY, "no memory for the mesh");
     dec->block = at;
     pmesh_codec_bind(&dec->codec, &h->sizes, at);
     dec_view_bind(&dec->view, h, at + part[0]);
@@ -131,16 +139,16 @@ static pmesh_status allocate(pmesh_decoder *dec)
 
 static pmesh_status take_header(pmesh_decoder *dec)
 {
-    pmesh_cursor in = pmesh_cursor_make(dec->small, dec->size);
+    pmesh_cursor in = pmesh_cursor_make(dec->small, dec->frame.size);
     const char *rule = NULL;
     pmesh_status status = pmesh_header_read(&in, &dec->header, &rule);
     if (status != PMESH_OK)
-        return dec_fail(dec, status, rule);
+        return fail(dec, status, rule);
     status = allocate(dec);
     if (status != PMESH_OK)
         return status;
     dec->has_header = true;
-    dec->header_end = dec->offset;
+    dec->header_end = dec->frame.offset;
     return PMESH_OK;
 }
 
@@ -176,12 +184,12 @@ static pmesh_status take_draco(pmesh_decoder *dec, pmesh_cursor *in)
 
 static pmesh_status take_base(pmesh_decoder *dec)
 {
-    pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->size);
+    pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->frame.size);
     const pmesh_header_chunk *h = &dec->header;
     const bool native = h->base_coder == PMESH_BASE_NATIVE;
     pmesh_status status = native ? PMESH_OK : take_draco(dec, &in);
     if (status != PMESH_OK)
-        return dec_fail(dec, status, dec->codec.rule);
+        return fail(dec, status, dec->codec.rule);
 
     pmesh_coder coder;
     pmesh_coder_decode(&coder, in.next, (size_t)(in.end - in.next));
@@ -192,7 +200,7 @@ static pmesh_status take_base(pmesh_decoder *dec)
         status = pmesh_base_attributes_code(&dec->codec, &coder, NULL,
                                             h->base_wedges);
     if (status != PMESH_OK)
-        return dec_fail(dec, status, dec->codec.rule);
+        return fail(dec, status, dec->codec.rule);
     if (!pmesh_coder_finish(&coder))
         return corrupt(dec, "SPEC 6.1: bytes behind the base mesh");
     status = finish_level(dec);
@@ -206,7 +214,7 @@ static pmesh_status take_base(pmesh_decoder *dec)
 
 static pmesh_status take_block(pmesh_decoder *dec)
 {
-    pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->size);
+    pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->frame.size);
     const uint32_t splits = pmesh_get_count(&in, PMESH_MAX_BLOCK_SPLITS);
     if (in.overrun || splits == 0)
         return corrupt(dec, "SPEC 6.3: a block's count is out of range");
@@ -219,19 +227,19 @@ static pmesh_status take_block(pmesh_decoder *dec)
     const pmesh_status status =
         pmesh_block_code(&dec->codec, &coder, NULL, splits);
     if (status != PMESH_OK)
-        return dec_fail(dec, status, dec->codec.rule);
+        return fail(dec, status, dec->codec.rule);
     if (!pmesh_coder_finish(&coder))
         return corrupt(dec, "SPEC 6.1: bytes behind a block");
     if (!dec_view_append(dec))
         return corrupt(dec, "SPEC 5.3: more moved corners than declared");
-    return dec->type == PMESH_CHUNK_BLOCK_LAST ? finish_level(dec) : PMESH_OK;
+    return dec->frame.type == PMESH_CHUNK_BLOCK_LAST ? finish_level(dec) : PMESH_OK;
 }
 
 /* The count that others see changes once the chunk is known to be good. */
 static pmesh_status take_positions(pmesh_decoder *dec)
 {
     const uint32_t before = dec->exact.count;
-    pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->size);
+    pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->frame.size);
     const uint32_t count =
         pmesh_get_count(&in, dec->header.sizes.vertices - before);
     if (in.overrun || count == 0)
@@ -251,18 +259,19 @@ static pmesh_status take_positions(pmesh_decoder *dec)
 
 static pmesh_status take_end(pmesh_decoder *dec)
 {
-    return dec->hash == dec->header.content_hash
+    return dec->frame.hash == dec->header.content_hash
                ? PMESH_OK
                : corrupt(dec, "SPEC 5.3: the content hash does not match");
 }
 
-pmesh_status dec_chunk_finish(pmesh_decoder *dec)
+static pmesh_status chunk_finish(void *self)
 {
-    switch (dec->type) {
+    pmesh_decoder *dec = (pmesh_decoder *)self;
+    switch (dec->frame.type) {
     case PMESH_CHUNK_HEADER:
         return take_header(dec);
     case PMESH_CHUNK_NAMES:
-        memcpy(dec->names, dec->payload, dec->size);
+        memcpy(dec->names, dec->payload, dec->frame.size);
         dec->has_names = true;
         return PMESH_OK;
     case PMESH_CHUNK_BASE:
@@ -274,4 +283,13 @@ pmesh_status dec_chunk_finish(pmesh_decoder *dec)
     default:
         return take_block(dec);
     }
+}
+
+pmesh_status pmesh_decoder_feed(pmesh_decoder *dec, const void *data,
+                                size_t size)
+{
+    if (!dec || (!data && size > 0))
+        return PMESH_E_ARGUMENT;
+    const dec_frame_owner owner = { dec, chunk_begin, chunk_finish };
+    return dec_frame_feed(&dec->frame, &owner, data, size);
 }

@@ -11,7 +11,7 @@
 #define DEC_INTERNAL_H
 
 #include "decoder/dec_touched.h"
-#include "decoder/pmesh_decode.h"
+#include "decoder/dec_frame.h"
 #include "format/codec.h"
 #include "format/exact.h"
 #include "format/header.h"
@@ -42,31 +42,10 @@ typedef struct dec_changed {
     uint32_t exact;       /* vertices known to be exact */
 } dec_changed;
 
-typedef enum dec_stage {
-    DEC_SIGNATURE,
-    DEC_CHUNK_START, /* type and size */
-    DEC_CHUNK_BODY,  /* payload and checksum */
-    DEC_END
-} dec_stage;
-
 struct pmesh_decoder {
     pmesh_allocator allocator;
     pmesh_decoder_config config;
-    pmesh_decode_error error;
-
-    /* Framing (dec_stream.c). */
-    dec_stage stage;
-    uint64_t offset;       /* bytes taken so far */
-    uint64_t chunk_offset; /* where the current chunk starts */
-    uint8_t start[16];     /* signature, or a chunk's type and size */
-    uint32_t start_size;
-    uint8_t type;
-    uint32_t size, received; /* of payload and checksum */
-    uint32_t crc;
-    uint8_t tail[PMESH_CRC_SIZE];
-    uint64_t hash;
-    uint64_t whole;      /* bytes up to the last complete chunk */
-    bool skipping;
+    dec_frame frame;
 
     /* Contents (dec_chunk.c). */
     bool has_header, has_base, has_names;
@@ -86,16 +65,6 @@ struct pmesh_decoder {
     uint64_t block_size;
     uint8_t small[PMESH_MAX_HEADER_SIZE]; /* payload of the header chunk */
 };
-
-/* Makes `status` final; offset is that of the current chunk. */
-pmesh_status dec_fail(pmesh_decoder *dec, pmesh_status status,
-                      const char *rule);
-
-/* Is a chunk of this type and payload size legal here? Sets skipping. */
-pmesh_status dec_chunk_begin(pmesh_decoder *dec);
-
-/* Takes in a chunk whose checksum was right. */
-pmesh_status dec_chunk_finish(pmesh_decoder *dec);
 
 /* Bytes and layout of the view's arrays, as pmesh_codec_bind(). */
 uint64_t dec_view_bind(dec_view *view, const pmesh_header_chunk *header,

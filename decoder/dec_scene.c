@@ -4,6 +4,8 @@
  */
 #include "decoder/dec_scene.h"
 
+#include <string.h>
+
 #include "decoder/dec_internal.h"
 #include "format/alloc.h"
 
@@ -27,8 +29,7 @@ pmesh_status pmesh_scene_create(pmesh_scene **out,
     s->allocator = c.decoder.allocator;
     s->config = c;
     s->memory_left = c.decoder.max_memory;
-    s->error = (pmesh_decode_error){ PMESH_OK, 0, "" };
-    s->hash = PMESH_HASH_START;
+    dec_frame_start(&s->frame);
     *out = s;
     return PMESH_OK;
 }
@@ -40,22 +41,47 @@ void pmesh_scene_destroy(pmesh_scene *s)
     const pmesh_allocator a = s->allocator;
     for (uint32_t i = 0; s->block && i < s->head.mesh_count; i++)
         pmesh_decoder_destroy(s->mesh[i].decoder);
-    pmesh_release(&a, s->header, s->size, 1);
+    pmesh_release(&a, s->header, s->frame.size, 1);
     pmesh_release(&a, s->block, (size_t)s->block_size, 1);
     pmesh_release(&a, s, 1, sizeof *s);
 }
 
+pmesh_status pmesh_scene_probe(const void *data, size_t size)
+{
+    const uint8_t *bytes = (const uint8_t *)data;
+    const size_t n = size < PMESH_SIGNATURE_SIZE ? size : PMESH_SIGNATURE_SIZE;
+
+    if (n > 0 && memcmp(bytes, PMESH_SIGNATURE, n) != 0)
+        return PMESH_E_MAGIC;
+    if (size <= PMESH_SIGNATURE_SIZE)
+        return PMESH_NEED_DATA;
+    return bytes[PMESH_SIGNATURE_SIZE] == PMESH_CHUNK_SCENE
+               ? PMESH_OK
+               : PMESH_E_UNSUPPORTED;
+}
+
+pmesh_status pmesh_scene_feed(pmesh_scene *s, const void *data, size_t size)
+{
+    if (!s || (!data && size > 0))
+        return PMESH_E_ARGUMENT;
+    const dec_frame_owner owner = { s, dec_scene_begin, dec_scene_finish };
+    return dec_frame_feed(&s->frame, &owner, data, size);
+}
+
 pmesh_decode_error pmesh_scene_error(const pmesh_scene *s)
 {
-    return s->error;
+    return s->frame.error;
 }
 
 pmesh_status pmesh_scene_get_header(const pmesh_scene *s,
                                     pmesh_scene_header *out)
 {
     if (!s->has_header)
-        return s->error.status < 0 ? s->error.status : PMESH_NEED_DATA;
+        return s->frame.error.status < 0 ? s->frame.error.status
+                                         : PMESH_NEED_DATA;
     *out = (pmesh_scene_header){ .content_hash = s->head.content_hash,
+                                 .document_form =
+                                     (pmesh_document_form)s->head.document_form,
                                  .document_bytes = s->head.document_size,
                                  .mesh_count = s->head.mesh_count,
                                  .resource_count = s->head.resource_count,
@@ -77,9 +103,9 @@ static bool has_base(const dec_scene_mesh *mesh)
 pmesh_scene_progress pmesh_scene_get_progress(const pmesh_scene *s)
 {
     pmesh_scene_progress p = {
-        .bytes = s->whole,
+        .bytes = s->frame.whole,
         .document = s->has_header && s->document.received == s->document.size,
-        .complete = s->stage == DEC_SCENE_END && s->error.status >= 0
+        .complete = s->frame.stage == DEC_END && s->frame.error.status >= 0
     };
     for (uint32_t i = 0; s->has_header && i < s->head.mesh_count; i++) {
         if (!has_base(&s->mesh[i]))
@@ -246,11 +272,28 @@ static void show(pmesh_scene *s, pmesh_scene_shown *shown)
     }
 }
 
+static const pmesh_scene_target everything = { .faces = 0 };
+
+pmesh_status pmesh_scene_share(pmesh_scene *s, const pmesh_scene_target *target,
+                               uint32_t *faces)
+{
+    pmesh_status status = PMESH_NEED_DATA;
+
+    if (!s->has_header)
+        return status;
+    share(s, target ? target : &everything);
+    for (uint32_t i = 0; i < s->head.mesh_count; i++) {
+        faces[i] = has_base(&s->mesh[i]) ? s->mesh[i].faces : 0;
+        if (faces[i] > 0)
+            status = PMESH_OK;
+    }
+    return status;
+}
+
 pmesh_status pmesh_scene_refine(pmesh_scene *s,
                                 const pmesh_scene_target *target,
                                 pmesh_scene_shown *shown)
 {
-    static const pmesh_scene_target everything = { .faces = 0 };
     pmesh_scene_shown unwanted;
 
     if (!s->has_header)

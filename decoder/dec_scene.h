@@ -8,8 +8,8 @@
 
 #include <stdbool.h>
 
+#include "decoder/dec_frame.h"
 #include "decoder/pmesh_scene.h"
-#include "format/layout.h"
 #include "format/scene.h"
 
 typedef struct dec_scene_mesh {
@@ -27,30 +27,11 @@ typedef struct dec_scene_part {
     uint64_t size, received;
 } dec_scene_part;
 
-typedef enum dec_scene_stage {
-    DEC_SCENE_SIGNATURE,
-    DEC_SCENE_START, /* type and size */
-    DEC_SCENE_BODY,  /* payload and checksum */
-    DEC_SCENE_END
-} dec_scene_stage;
-
 struct pmesh_scene {
     pmesh_allocator allocator;
     pmesh_scene_config config;
-    pmesh_decode_error error;
+    dec_frame frame;
     uint64_t memory_left;
-
-    /* Framing (dec_scene_stream.c). */
-    dec_scene_stage stage;
-    uint64_t offset, chunk_offset, whole;
-    uint8_t start[16];
-    uint32_t start_size;
-    uint8_t type;
-    uint32_t size, received;
-    uint32_t crc;
-    uint8_t tail[PMESH_CRC_SIZE];
-    uint64_t hash;
-    bool skipping;
 
     /* Contents (dec_scene_part.c). */
     bool has_header;
@@ -67,14 +48,8 @@ struct pmesh_scene {
     uint32_t *heap;             /* of refining */
 };
 
-/* Makes `status` final; offset is that of the current chunk. */
-pmesh_status dec_scene_fail(pmesh_scene *scene, pmesh_status status,
-                            const char *rule);
-
-/* Is a chunk of this type and payload size legal here? Sets skipping. */
-pmesh_status dec_scene_begin(pmesh_scene *scene);
-
-/* Takes in a chunk whose checksum was right. */
-pmesh_status dec_scene_finish(pmesh_scene *scene);
+/* Of the frame, whose owner is a pmesh_scene. */
+pmesh_status dec_scene_begin(void *scene);
+pmesh_status dec_scene_finish(void *scene);
 
 #endif

@@ -9,43 +9,51 @@
 #include "decoder/dec_scene.h"
 #include "format/alloc.h"
 
+static pmesh_status fail(pmesh_scene *s, pmesh_status status,
+                         const char *rule)
+{
+    return dec_frame_fail(&s->frame, status, rule);
+}
+
 static pmesh_status corrupt(pmesh_scene *s, const char *rule)
 {
-    return dec_scene_fail(s, PMESH_E_CORRUPT, rule);
+    return fail(s, PMESH_E_CORRUPT, rule);
 }
 
 static pmesh_status begin_header(pmesh_scene *s)
 {
     if (s->has_header)
         return corrupt(s, "SPEC 11.1: a second header");
-    if (s->size > PMESH_MAX_SCENE_HEADER)
+    if (s->frame.size > PMESH_MAX_SCENE_HEADER)
         return corrupt(s, "SPEC 11.2: the header is too large");
-    s->header = pmesh_alloc(&s->allocator, s->size, 1);
+    s->header = pmesh_alloc(&s->allocator, s->frame.size, 1);
+    s->frame.to = s->header;
     return s->header ? PMESH_OK
-                     : dec_scene_fail(s, PMESH_E_MEMORY,
-                                      "no memory for the header");
+                     : fail(s, PMESH_E_MEMORY, "no memory for the header");
 }
 
-pmesh_status dec_scene_begin(pmesh_scene *s)
+pmesh_status dec_scene_begin(void *scene)
 {
-    const uint8_t type = s->type;
-    s->skipping = type >= PMESH_CHUNK_SKIPPABLE;
+    pmesh_scene *s = (pmesh_scene *)scene;
+    const uint8_t type = s->frame.type;
     if (type == PMESH_CHUNK_SCENE)
         return begin_header(s);
     if (!s->has_header)
         return type == PMESH_CHUNK_HEADER
-                   ? dec_scene_fail(s, PMESH_E_UNSUPPORTED,
-                                    "SPEC 11.1: a single mesh, not a scene")
+                   ? fail(s, PMESH_E_UNSUPPORTED,
+                          "SPEC 11.1: a single mesh, not a scene")
                    : corrupt(s, "SPEC 5.2: the first chunk is not the header");
-    if (s->skipping)
+    if (type >= PMESH_CHUNK_SKIPPABLE)
         return PMESH_OK;
+    s->frame.to = s->payload;
     if (type == PMESH_CHUNK_END)
-        return s->size == 0 ? PMESH_OK
-                            : corrupt(s, "SPEC 11.1: the end is not empty");
+        return s->frame.size == 0
+                   ? PMESH_OK
+                   : corrupt(s, "SPEC 11.1: the end is not empty");
     if (type != PMESH_CHUNK_PART)
-        return dec_scene_fail(s, PMESH_E_VERSION,
-                              "SPEC 11.1: an unknown critical chunk");
-    return s->size <= s->head.chunk_size
+        return fail(s, PMESH_E_VERSION,
+                    "SPEC 11.1: an unknown critical chunk");
+    return s->frame.size <= s->head.chunk_size
                ? PMESH_OK
                : corrupt(s, "SPEC 11.2: a chunk larger than the header "
                             "declares");
@@ -109,11 +117,11 @@ static pmesh_status allocate(pmesh_scene *s, pmesh_cursor in,
     if (!s->config.skip_resources)
         most += resource_bytes(s, in);
     if (most > s->memory_left || most > SIZE_MAX)
-        return dec_scene_fail(s, PMESH_E_LIMIT,
-                              "the scene is larger than the memory limit");
+        return fail(s, PMESH_E_LIMIT,
+                    "the scene is larger than the memory limit");
     uint8_t *block = pmesh_alloc(&s->allocator, (size_t)most, 1);
     if (!block)
-        return dec_scene_fail(s, PMESH_E_MEMORY, "no memory for the scene");
+        return fail(s, PMESH_E_MEMORY, "no memory for the scene");
     s->block = block;
     s->block_size = most;
     s->memory_left -= most;
@@ -124,19 +132,19 @@ static pmesh_status allocate(pmesh_scene *s, pmesh_cursor in,
 
 static pmesh_status take_header(pmesh_scene *s)
 {
-    pmesh_cursor in = pmesh_cursor_make(s->header, s->size);
+    pmesh_cursor in = pmesh_cursor_make(s->header, s->frame.size);
     const char *rule = NULL;
     uint64_t *sizes;
 
     pmesh_status status = pmesh_scene_head_read(&in, &s->head, &rule);
     if (status != PMESH_OK)
-        return dec_scene_fail(s, status, rule);
+        return fail(s, status, rule);
     status = allocate(s, in, &sizes);
     if (status != PMESH_OK)
         return status;
     status = pmesh_scene_lists_read(&in, &s->head, s->stream, sizes, &rule);
     if (status != PMESH_OK)
-        return dec_scene_fail(s, status, rule);
+        return fail(s, status, rule);
     uint64_t *unused;
     uint8_t *at = (uint8_t *)s->block;
     at += bind_arrays(s, at, &unused);
@@ -145,10 +153,10 @@ static pmesh_status take_header(pmesh_scene *s)
         s->resource[i].data = s->config.skip_resources ? NULL : at;
         at += s->config.skip_resources ? 0 : sizes[i];
     }
-    pmesh_release(&s->allocator, s->header, s->size, 1);
+    pmesh_release(&s->allocator, s->header, s->frame.size, 1);
     s->header = NULL;
     s->has_header = true;
-    s->header_end = s->offset;
+    s->header_end = s->frame.offset;
     return PMESH_OK;
 }
 
@@ -170,13 +178,13 @@ static pmesh_status begin_mesh(pmesh_scene *s, dec_scene_mesh *mesh)
     pmesh_decoder_config config = s->config.decoder;
 
     if (s->memory_left <= sizeof(struct pmesh_decoder))
-        return dec_scene_fail(s, PMESH_E_LIMIT,
-                              "the scene is larger than the memory limit");
+        return fail(s, PMESH_E_LIMIT,
+                    "the scene is larger than the memory limit");
     s->memory_left -= sizeof(struct pmesh_decoder);
     const pmesh_status status = pmesh_decoder_create(&mesh->decoder, &config);
     return status == PMESH_OK
                ? status
-               : dec_scene_fail(s, status, "no memory for a mesh");
+               : fail(s, status, "no memory for a mesh");
 }
 
 /* How far the mesh came, and what it took. */
@@ -189,7 +197,7 @@ static void look(pmesh_scene *s, dec_scene_mesh *mesh)
                                                            : s->memory_left;
     }
     while (mesh->levels < pmesh_decoder_progress(dec).levels)
-        mesh->level_end[mesh->levels++] = s->offset;
+        mesh->level_end[mesh->levels++] = s->frame.offset;
 }
 
 static pmesh_status take_mesh(pmesh_scene *s, uint32_t number,
@@ -211,14 +219,14 @@ static pmesh_status take_mesh(pmesh_scene *s, uint32_t number,
         pmesh_decoder_feed(mesh->decoder, data, size);
     look(s, mesh);
     return status >= 0 ? PMESH_OK
-                       : dec_scene_fail(s, status,
-                                        pmesh_decoder_error(mesh->decoder).rule);
+                       : fail(s, status,
+                              pmesh_decoder_error(mesh->decoder).rule);
 }
 
 static pmesh_status take_part(pmesh_scene *s)
 {
     const pmesh_scene_head *h = &s->head;
-    pmesh_cursor in = pmesh_cursor_make(s->payload, s->size);
+    pmesh_cursor in = pmesh_cursor_make(s->payload, s->frame.size);
     const uint64_t number = pmesh_get_varint(&in);
     const size_t size = (size_t)(in.end - in.next);
 
@@ -245,14 +253,15 @@ static pmesh_status take_end(pmesh_scene *s)
                 pmesh_decoder_progress(s->mesh[i].decoder).complete;
     if (!whole)
         return corrupt(s, "SPEC 11.3: the end comes before all parts");
-    return s->hash == s->head.content_hash
+    return s->frame.hash == s->head.content_hash
                ? PMESH_OK
                : corrupt(s, "SPEC 11.2: the content hash does not match");
 }
 
-pmesh_status dec_scene_finish(pmesh_scene *s)
+pmesh_status dec_scene_finish(void *scene)
 {
-    switch (s->type) {
+    pmesh_scene *s = (pmesh_scene *)scene;
+    switch (s->frame.type) {
     case PMESH_CHUNK_SCENE:
         return take_header(s);
     case PMESH_CHUNK_PART:

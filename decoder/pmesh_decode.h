@@ -155,7 +155,10 @@ typedef struct pmesh_range {
  * elements (output vertices, index triples); beyond the buffers' new ends
  * nothing is listed. Every range begins and ends with an element that changed;
  * if there are more runs of those than ranges, the narrowest gaps between them
- * are listed, too.
+ * are listed, too: fewer elements cannot be in so many ranges. Small steps touch
+ * corners all over a mesh: of bunny, 1 % of the faces touch some 1000 runs, and
+ * 64 ranges list 13 times what changed, 256 would 7 times, 1024 once. But each is
+ * a call of the graphics interface, which costs as much as kilobytes.
  */
 #define PMESH_MAX_RANGES 64
 typedef struct pmesh_changes {

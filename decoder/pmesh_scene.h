@@ -72,7 +72,8 @@ PMESH_API pmesh_decode_error pmesh_scene_error(const pmesh_scene *scene);
 
 typedef struct pmesh_scene_header {
     uint64_t content_hash;
-    uint64_t document_bytes;
+    pmesh_document_form document_form;
+    uint64_t document_bytes; /* as stored in that form */
     uint32_t mesh_count, resource_count;
     uint32_t level_count; /* levels[0]: all base meshes, the last: all there is
                              of the meshes but exact positions */
@@ -111,7 +112,8 @@ typedef struct pmesh_scene_bytes {
     uint64_t arrived;    /* how many are there */
 } pmesh_scene_bytes;
 
-/* The document, and a resource < resource_count; zeros before the header. */
+/* The document, in the form that the header tells, and a resource <
+ * resource_count; zeros before the header. */
 PMESH_API pmesh_scene_bytes pmesh_scene_document(const pmesh_scene *scene);
 PMESH_API pmesh_scene_bytes pmesh_scene_resource(const pmesh_scene *scene,
                                                  uint32_t resource);
@@ -147,6 +149,17 @@ typedef struct pmesh_scene_shown {
 PMESH_API pmesh_status pmesh_scene_refine(pmesh_scene *scene,
                                           const pmesh_scene_target *target,
                                           pmesh_scene_shown *shown);
+
+/*
+ * Only says how refine() would share the target: faces of each mesh, 0 before
+ * its base mesh is there; `faces` holds mesh_count numbers. For callers who
+ * refine each mesh by pmesh_decoder_refine(): with the ranges that changed, a
+ * budget of work for a frame, or a look at what is in the picture. Returns as
+ * refine().
+ */
+PMESH_API pmesh_status pmesh_scene_share(pmesh_scene *scene,
+                                         const pmesh_scene_target *target,
+                                         uint32_t *faces);
 
 #ifdef __cplusplus
 }

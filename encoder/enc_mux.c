@@ -7,6 +7,7 @@
 
 enum {
     PIECE = 32768, /* bytes of one chunk, if what it holds can be cut */
+    WHOLE = (1 << 28) - 64, /* if it must not be, beyond what a chunk takes */
     JOINED = 2048  /* short runs of one mesh share a chunk */
 };
 
@@ -31,12 +32,13 @@ static enc_piece *add_piece(enc_mux *m, uint32_t part, const uint8_t *data,
     return p;
 }
 
-static void add_blob(enc_mux *m, uint32_t part, const pmesh_scene_blob *blob)
+static void add_blob(enc_mux *m, uint32_t part, const pmesh_scene_blob *blob,
+                     size_t most)
 {
     const uint8_t *data = blob->data;
-    for (size_t at = 0; at < blob->size && !m->failed; at += PIECE) {
+    for (size_t at = 0; at < blob->size && !m->failed; at += most) {
         const size_t left = blob->size - at;
-        add_piece(m, part, data + at, left < PIECE ? left : PIECE);
+        add_piece(m, part, data + at, left < most ? left : most);
     }
 }
 
@@ -44,7 +46,8 @@ static void add_resources(enc_mux *m, size_t first, size_t end)
 {
     for (size_t i = first; i < end; i++)
         add_blob(m, (uint32_t)(1 + m->in->mesh_count + i),
-                 &m->in->resources[i]);
+                 &m->in->resources[i],
+                 m->in->resource_offsets ? WHOLE : PIECE);
 }
 
 /* Behind the piece before, if it is a short one of the same mesh. */
@@ -161,7 +164,7 @@ pmesh_status enc_mux_build(enc_mux *m, const pmesh_scene_input *in,
         if (status != PMESH_OK)
             return status;
     }
-    add_blob(m, 0, &in->document);
+    add_blob(m, 0, &in->document, PIECE);
     add_resources(m, 0, in->early_count);
     order_meshes(m);
     add_resources(m, in->early_count, in->resource_count);

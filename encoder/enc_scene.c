@@ -78,6 +78,7 @@ static void choose_rows(scene_file *f)
 static pmesh_status fill_head(scene_file *f)
 {
     const pmesh_scene_input *in = f->mux.in;
+    f->head.document_form = in->document_form;
     f->head.document_size = in->document.size;
     f->head.mesh_count = (uint32_t)in->mesh_count;
     f->head.resource_count = (uint32_t)in->resource_count;
@@ -137,7 +138,10 @@ static bool put_piece(const scene_file *f, pmesh_write write, void *user,
                            : p->part <= f->mux.in->mesh_count
                                ? &report->bytes_meshes
                                : &report->bytes_resources;
+    uint64_t *const told = f->mux.in->resource_offsets;
     *part += size;
+    if (told && p->part > f->mux.in->mesh_count)
+        told[p->part - f->mux.in->mesh_count - 1] = report->bytes + n;
     return put_chunk(write, user, report, start, n, p->data, p->size, p->crc);
 }
 
@@ -179,11 +183,14 @@ static bool input_is_sound(const pmesh_scene_input *in)
         in->resource_count > PMESH_MAX_SCENE_PARTS ||
         in->early_count > in->resource_count ||
         in->document.size > PMESH_MAX_CHUNK_SIZE ||
+        in->document_form > PMESH_DOCUMENT_ZLIB ||
         (in->document.size > 0 && !in->document.data) ||
         (in->resource_count > 0 && !in->resources))
         return false;
     for (size_t i = 0; i < in->resource_count; i++)
-        if (in->resources[i].size > 0 && !in->resources[i].data)
+        if ((in->resources[i].size > 0 && !in->resources[i].data) ||
+            (in->resource_offsets &&
+             in->resources[i].size > PMESH_MAX_CHUNK_SIZE - 64))
             return false;
     for (size_t i = 0; i < in->mesh_count; i++) {
         const pmesh_scene_mesh_input *mesh = &in->meshes[i];

@@ -44,10 +44,15 @@ typedef struct pmesh_scene_input {
     const pmesh_scene_mesh_input *meshes;
     size_t mesh_count; /* 1 .. 65536 */
     pmesh_scene_blob document; /* at most 2^28 bytes; may be empty */
+    pmesh_document_form document_form; /* of these bytes; they are not looked
+                                          at */
     const pmesh_scene_blob *resources;
     size_t resource_count; /* at most 65536 */
     size_t early_count;    /* the first of the resources, which are needed to
                               show anything, go before the meshes */
+    uint64_t *resource_offsets; /* NULL, or room for resource_count: each
+                                   resource stays in one piece, and this is told
+                                   where it starts in the file */
 } pmesh_scene_input;
 
 typedef struct pmesh_scene_report {

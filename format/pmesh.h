@@ -136,6 +136,12 @@ typedef struct pmesh_scene_level {
     float error;       /* world units, never rising from row to row */
 } pmesh_scene_level;
 
+/* How the document of a scene is stored; the libraries see bytes only. */
+typedef enum pmesh_document_form {
+    PMESH_DOCUMENT_PLAIN = 0,
+    PMESH_DOCUMENT_ZLIB = 1 /* RFC 1950 */
+} pmesh_document_form;
+
 typedef enum pmesh_profile {
     PMESH_COMPACT = 0,  /* smallest complete file; bakes twice as long, as the
                            better of two ways is kept */

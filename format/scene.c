@@ -25,6 +25,7 @@ void pmesh_scene_head_write(pmesh_writer *out, const pmesh_scene_head *h,
     pmesh_put(out, PMESH_SCENE_VERSION, 1);
     pmesh_put(out, h->content_hash, 8);
     pmesh_put_varint(out, h->chunk_size);
+    pmesh_put(out, h->document_form, 1);
     pmesh_put_varint(out, h->document_size);
     pmesh_put_varint(out, h->mesh_count);
     pmesh_put_varint(out, h->resource_count);
@@ -82,6 +83,11 @@ pmesh_status pmesh_scene_head_read(pmesh_cursor *in, pmesh_scene_head *h,
     }
     h->content_hash = pmesh_get(in, 8);
     h->chunk_size = pmesh_get_count(in, PMESH_MAX_CHUNK_SIZE);
+    h->document_form = pmesh_get_u8(in);
+    if (h->document_form > PMESH_DOCUMENT_ZLIB && !in->overrun) {
+        *rule = "SPEC 11.2: an unknown form of the document";
+        return PMESH_E_CORRUPT;
+    }
     h->document_size = pmesh_get_count(in, PMESH_MAX_CHUNK_SIZE);
     h->mesh_count = pmesh_get_count(in, PMESH_MAX_SCENE_PARTS);
     h->resource_count = pmesh_get_count(in, PMESH_MAX_SCENE_PARTS);

@@ -25,7 +25,8 @@ typedef struct pmesh_scene_row {
 typedef struct pmesh_scene_head {
     uint64_t content_hash;
     uint32_t chunk_size; /* largest payload of a part chunk */
-    uint64_t document_size;
+    uint32_t document_form; /* pmesh_document_form */
+    uint64_t document_size; /* as it is stored */
     uint32_t mesh_count, resource_count, level_count;
     pmesh_scene_row levels[PMESH_MAX_LEVELS];
 } pmesh_scene_head;

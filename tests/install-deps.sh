@@ -34,6 +34,7 @@ group_build() {
     need libstb-dev header stb/stb_image_write.h
     need libtinygltf-dev header tiny_gltf.h
     need nlohmann-json3-dev header nlohmann/json.hpp
+    need zlib1g-dev header zlib.h
 }
 
 group_test() {
@@ -74,6 +75,8 @@ group_cross() {
 group_web() {
     need clang program clang
     need lld program wasm-ld
+    need binaryen program wasm-opt
+    need zopfli program zopfli
     need nodejs program node
     need npm program npm
     need chromium program chromium

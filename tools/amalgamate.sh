@@ -8,6 +8,9 @@
 # the internal functions made static. Where two sources use the same name
 # for something of their own, the name gets that of the source in front.
 #
+# Codec code runs in either direction; here that is known, and what only an
+# encoder does goes away.
+#
 # C++ converts no void * by itself: what returns one returns PMESH_UNTYPED
 # here, which does.
 set -eu
@@ -148,6 +151,7 @@ TEXT
                 line !~ /\(void \*user/)
                 sub(/void \*/, "PMESH_UNTYPED ", line)
             gsub(/\(void \*\)/, "(PMESH_UNTYPED)", line)
+            gsub(/([a-z]+->)+encoding/, "false", line)
             print line
         }
         close(file)

@@ -7,7 +7,9 @@
 #include "encoder/pmesh_scene_encode.h"
 #include "tools/cmd.h"
 #include "tools/progress.h"
+#include "tools/scene_file.h"
 #include "tools/scene_parts.h"
+#include "tools/scene_write.h"
 
 static int collect(void *user, const void *data, size_t size)
 {
@@ -78,8 +80,33 @@ static void add_scene(bake_report *report, const pmesh_scene_report *scene,
     report->bytes_resources = scene->bytes_resources;
 }
 
+/* `stream`, where the resources are at `offsets`, in a GLB of the base meshes. */
+static bool wrap(const asset_bytes *stream, const uint64_t *offsets,
+                 bake_report *report, asset_bytes *out)
+{
+    const scene_style style = { .glb = true, .stream = stream,
+                                .resource_offsets = offsets };
+    const file_data data = { .bytes = stream->data, .size = stream->size };
+    asset notes = { 0 };
+    asset_error error;
+    scene_file file;
+
+    bool good = scene_file_open(&data, &file, &error) == CMD_DONE;
+    if (good) {
+        pmesh_scene_refine(file.scene, &(pmesh_scene_target){ .faces = 1 },
+                           NULL);
+        good = scene_write(file.scene, style, out, &notes, &error);
+    }
+    scene_file_close(&file);
+    if (!good)
+        report_asset_error(file_output_name(report->output), &error);
+    report->encode.bytes = out->size;
+    return good;
+}
+
 static int put_together(const scene_parts *parts, const asset_bytes *streams,
-                        bake_report *report, asset_bytes *out)
+                        uint64_t *offsets, bake_report *report,
+                        asset_bytes *out)
 {
     pmesh_scene_mesh_input *meshes = calloc(parts->mesh_count, sizeof *meshes);
     pmesh_scene_blob *resources =
@@ -98,8 +125,10 @@ static int put_together(const scene_parts *parts, const asset_bytes *streams,
         const pmesh_scene_input input = {
             .meshes = meshes, .mesh_count = parts->mesh_count,
             .document = { parts->document.data, parts->document.size },
+            .document_form = PMESH_DOCUMENT_ZLIB,
             .resources = resources, .resource_count = parts->resource_count,
-            .early_count = parts->early_count
+            .early_count = parts->early_count,
+            .resource_offsets = offsets
         };
         status = pmesh_scene_encode(&input, NULL, collect, out, &scene);
     }
@@ -113,6 +142,24 @@ static int put_together(const scene_parts *parts, const asset_bytes *streams,
                  status == PMESH_E_LIMIT ? "too large for a scene"
                                          : pmesh_status_text(status));
     return status == PMESH_E_LIMIT ? CMD_ASSET : CMD_IO;
+}
+
+static int put_into_glb(const scene_parts *parts, const asset_bytes *streams,
+                        bake_report *report, asset_bytes *out)
+{
+    uint64_t *offsets = calloc(parts->resource_count + 1, sizeof *offsets);
+    asset_bytes scene = { 0 };
+    int code = CMD_IO;
+
+    if (!offsets)
+        report_error(file_input_name(report->input), NULL, "out of memory");
+    else
+        code = put_together(parts, streams, offsets, report, &scene);
+    if (code == CMD_DONE && !wrap(&scene, offsets, report, out))
+        code = CMD_IO;
+    asset_bytes_free(&scene);
+    free(offsets);
+    return code;
 }
 
 static int bake_meshes(const scene_parts *parts, bake_mesh bake, void *user,
@@ -129,7 +176,7 @@ static int bake_meshes(const scene_parts *parts, bake_mesh bake, void *user,
     return CMD_DONE;
 }
 
-int bake_scene(const file_data *data, bake_mesh bake, void *user,
+int bake_scene(const file_data *data, bake_mesh bake, void *user, bool glb,
                bake_report *report, asset_bytes *out)
 {
     const bool standard = strcmp(report->input, "-") == 0;
@@ -150,8 +197,10 @@ int bake_scene(const file_data *data, bake_mesh bake, void *user,
         report_error(file_input_name(report->input), NULL, "out of memory");
     else
         code = bake_meshes(&parts, bake, user, report, streams);
-    if (code == CMD_DONE)
-        code = put_together(&parts, streams, report, out);
+    if (code == CMD_DONE && glb)
+        code = put_into_glb(&parts, streams, report, out);
+    else if (code == CMD_DONE)
+        code = put_together(&parts, streams, NULL, report, out);
     for (size_t i = 0; streams && i < parts.mesh_count; i++)
         asset_bytes_free(&streams[i]);
     free(streams);

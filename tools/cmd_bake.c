@@ -39,7 +39,9 @@ typedef struct options {
 
 static const args_option option_table[] = {
     { .name = "output", .letter = 'o', .kind = ARGS_TEXT, .value = "OUT",
-      AT(output), .help = ".pmesh to write; \"-\" for standard output" },
+      AT(output),
+      .help = ".pmesh to write, \"-\" for standard output; of a glTF\n"
+              "scene a .glb that any viewer shows coarsely" },
     { .name = "profile", .kind = ARGS_CHOICE,
       .value = "compact|balanced|quality", AT(profile),
       .help = "smallest file, best levels, or (default) balanced" },
@@ -199,11 +201,9 @@ static int check_options(const options *o, int operand_count)
     case ASSET_UNKNOWN:
         return CMD_DONE;
     case ASSET_GLB:
-    case ASSET_GLTF:
-        return usage("writing into glTF is not in this version; name the "
-                     "output .pmesh");
+        return CMD_DONE;
     default:
-        return usage("writes .pmesh files only; see pmesh extract");
+        return usage("writes .pmesh and .glb files only; see pmesh extract");
     }
 }
 
@@ -428,7 +428,13 @@ static int bake_one(void *user, const char *name, const asset *mesh,
     return bake_guided(user, name, mesh, report, out);
 }
 
-/* A glTF file with more in it than one mesh can hold. */
+static bool wants_glb(const options *o)
+{
+    return asset_format_of(o->output) == ASSET_GLB;
+}
+
+/* A glTF file with more in it than one mesh can hold, or that is to be one
+ * again. */
 static bool is_scene(const options *o, const file_data *data, const char *path)
 {
     const asset_format format = o->format < 0
@@ -438,16 +444,22 @@ static bool is_scene(const options *o, const file_data *data, const char *path)
            (format == ASSET_GLB || format == ASSET_GLTF ||
             format == ASSET_UNKNOWN) &&
            !load_is_stream(data, path) &&
-           scene_is_worth_it(data->bytes, data->size);
+           (wants_glb(o) || scene_is_worth_it(data->bytes, data->size));
 }
 
 static int bake(options *o, const file_data *data, bake_report *report)
 {
     asset_error error;
     asset_bytes bytes = { 0 };
-    int code = is_scene(o, data, report->input)
-                   ? bake_scene(data, bake_one, o, report, &bytes)
-                   : bake_merged(o, data, report, &bytes);
+    int code = CMD_USAGE;
+
+    if (is_scene(o, data, report->input))
+        code = bake_scene(data, bake_one, o, wants_glb(o), report, &bytes);
+    else if (wants_glb(o))
+        report_error(file_input_name(report->input), NULL,
+                     "only a glTF scene can be baked into a .glb");
+    else
+        code = bake_merged(o, data, report, &bytes);
 
     if (code == CMD_DONE) {
         const double written = progress_clock();

@@ -310,6 +310,7 @@ int cmd_extract(int argc, char **argv)
                     : file_read(job.input, FILE_LIMIT, &data, &error);
     if (!good)
         return input_failed(&job, CMD_IO, &error);
+    scene_file_unwrap(&data);
     if (file_check_output(job.output, !is_text(job.format), &data, &error))
         code = extract_from(&job, &data);
     else

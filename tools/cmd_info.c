@@ -211,6 +211,7 @@ int cmd_info(int argc, char **argv)
         report_asset_error(file_input_name(path), &error);
         return CMD_IO;
     }
+    scene_file_unwrap(&data);
     if (scene_file_is(&data)) {
         const int done = scene_info(path, &data, o.json, o.levels);
         file_free(&data);

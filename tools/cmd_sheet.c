@@ -399,6 +399,7 @@ static int run(job *j)
         report_asset_error(output, &error);
         return CMD_IO;
     }
+    scene_file_unwrap(&j->data);
     const int code = draw(j, &error);
     if (code != CMD_DONE) {
         report_asset_error(input, &error);

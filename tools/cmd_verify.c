@@ -104,6 +104,7 @@ static void judge(const char *path, verdict *v)
     if (!file_read(path, FILE_LIMIT, &data, &v->error))
         return;
     v->bytes = data.size;
+    scene_file_unwrap(&data);
     if (scene_file_is(&data))
         judge_scene(&data, v);
     else

@@ -12,6 +12,7 @@
 #include "tools/file.h"
 #include "tools/page.h"
 #include "tools/report.h"
+#include "tools/scene_file.h"
 #include "tools/serve.h"
 #include "tools/stream.h"
 
@@ -56,7 +57,8 @@ static const args_command command = {
         "shows the\nmesh at any number of faces or bytes, its error, "
         "wireframe, age of vertices, and\nthe original beside it; and how the "
         "mesh arrives over a slow link. The viewer's\npage is made by 'make "
-        "viewer' and installed with the program.\n\n"
+        "viewer' and installed with the program. Of a scene it shows\nall "
+        "meshes with their materials.\n\n"
         "With --serve the mesh is fetched by the page from 127.0.0.1, which no "
         "other\nmachine can reach. Files with a Draco base mesh cannot be "
         "shown.\n\n"
@@ -99,15 +101,14 @@ static void say_address(uint16_t port)
 }
 
 static int serve_page(const options *o, const char *path,
-                      const file_data *page, const stream *s,
+                      const file_data *page, uint64_t hash,
                       const file_data *mesh)
 {
     asset_bytes html = { 0 };
     asset_error error;
     char etag[32];
 
-    snprintf(etag, sizeof etag, "\"%016" PRIx64 "-%zx\"",
-             s->header.content_hash, mesh->size);
+    snprintf(etag, sizeof etag, "\"%016" PRIx64 "-%zx\"", hash, mesh->size);
     if (page_fill(page, title_of(o, path), NULL, MESH_PATH, &html, &error)) {
         const serve_file files[] = {
             { "/", "text/html; charset=utf-8", html.data, html.size, NULL },
@@ -121,30 +122,46 @@ static int serve_page(const options *o, const char *path,
     return CMD_IO;
 }
 
+/* Whether the page can show the file, and the hash that names its content. */
+static int look(const file_data *file, uint64_t *hash, asset_error *error)
+{
+    if (scene_file_is(file)) {
+        scene_file s;
+        const int code = scene_file_open(file, &s, error);
+        *hash = s.has_header ? s.header.content_hash : 0;
+        scene_file_close(&s);
+        return code;
+    }
+    stream s;
+    int code = stream_open_header(file, &s, error);
+    *hash = s.header.content_hash;
+    if (code == CMD_DONE && s.header.base_coder == PMESH_BASE_DRACO) {
+        asset_fail(error, "", "has a Draco base mesh, which the viewer cannot "
+                   "decode");
+        code = CMD_BOUND;
+    }
+    stream_close(&s);
+    return code;
+}
+
 static int view(const options *o, const char *path, const file_data *mesh)
 {
     char page_path[PAGE_PATH];
     asset_error error;
     file_data page;
-    stream s;
+    uint64_t hash;
 
-    int code = stream_open_header(mesh, &s, &error);
-    if (code == CMD_DONE && s.header.base_coder == PMESH_BASE_DRACO) {
-        asset_fail(&error, "", "has a Draco base mesh, which the viewer cannot "
-                   "decode");
-        code = CMD_BOUND;
-    }
+    int code = look(mesh, &hash, &error);
     if (code != CMD_DONE) {
         report_asset_error(file_input_name(path), &error);
     } else if (!page_read(o->page, page_path, &page, &error)) {
         report_asset_error(page_path, &error);
         code = CMD_IO;
     } else {
-        code = o->serve ? serve_page(o, path, &page, &s, mesh)
+        code = o->serve ? serve_page(o, path, &page, hash, mesh)
                         : write_page(o, path, &page, mesh);
         file_free(&page);
     }
-    stream_close(&s);
     return code;
 }
 

@@ -125,7 +125,8 @@ static bool encode(job *j, const pmesh_decoder *one, asset_bytes *out,
 
     if (!one && gltf && !r->no_attributes)
         return scene_write(j->file.scene,
-                           (scene_style){ r->format == ASSET_GLB, r->inflate },
+                           (scene_style){ .glb = r->format == ASSET_GLB,
+                                          .inflate = r->inflate },
                            out, &j->notes, error);
     if (!(one ? asset_from_decoder(one, &mesh, error)
               : scene_file_merge(&j->file, r->inflate, &mesh, error)))

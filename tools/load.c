@@ -229,6 +229,7 @@ int load_mesh(const char *path, asset *out, asset_error *error)
     *out = (asset){ 0 };
     if (!file_read(path, FILE_LIMIT, &data, error))
         return CMD_IO;
+    scene_file_unwrap(&data);
     const int code = load_mesh_data(&data, path, out, error);
     file_free(&data);
     return code;

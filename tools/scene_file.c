@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "tools/scene_file.h"
 
+#include <string.h>
+
 #include "tools/cmd.h"
 #include "tools/draco_base.h"
 #include "tools/scene_write.h"
@@ -10,6 +12,16 @@ bool scene_file_is(const file_data *data)
 {
     return data->size > 0 &&
            pmesh_scene_probe(data->bytes, data->size) == PMESH_OK;
+}
+
+void scene_file_unwrap(file_data *data)
+{
+    size_t offset, size;
+
+    if (!scene_find_stream(data->bytes, data->size, &offset, &size))
+        return;
+    memmove(data->bytes, data->bytes + offset, size);
+    data->size = size;
 }
 
 static void look(scene_file *file)
@@ -55,8 +67,9 @@ bool scene_file_merge(const scene_file *file, bool inflate, asset *out,
 
     *out = (asset){ 0 };
     const bool ok =
-        scene_write(file->scene, (scene_style){ true, inflate }, &glb, &notes,
-                    error) &&
+        scene_write(file->scene,
+                    (scene_style){ .glb = true, .inflate = inflate }, &glb,
+                    &notes, error) &&
         asset_read(glb.data, glb.size, ASSET_GLB, NULL, out, error);
     asset_bytes_free(&glb);
     return ok;

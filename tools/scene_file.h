@@ -22,6 +22,9 @@ typedef struct scene_file {
 /* Whether the data begin a scene. */
 bool scene_file_is(const file_data *data);
 
+/* Leaves of a GLB with a scene in it, whole or cut off, only the scene. */
+void scene_file_unwrap(file_data *data);
+
 /*
  * Decodes `data` as far as it goes. Returns CMD_DONE for a whole file and for a
  * prefix, else as stream_open(); *out is open in every case.

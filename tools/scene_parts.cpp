@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "tools/gltf_document.h"
+#include "tools/pack.h"
 
 namespace {
 
@@ -196,7 +197,9 @@ void read(const gltf_source &source, holder *held, scene_parts *out)
 
     const gltf_parts parts =
         gltf_take_apart(source, model, streams, budget, &out->notes);
-    put(&out->document, parts.document.data(), parts.document.size());
+    if (!pack_zlib(parts.document.data(), parts.document.size(),
+                   &out->document))
+        throw std::bad_alloc();
     out->resources = static_cast<asset_bytes *>(
         calloc(parts.resources.size() + 1, sizeof *out->resources));
     if (!out->resources)

@@ -6,14 +6,17 @@
  */
 #include "tools/scene_write.h"
 
+#include <cstring>
 #include <memory>
 #include <new>
 
 #include "tools/gltf_document.h"
+#include "tools/pack.h"
 #include "tools/scene_geometry.h"
 
 namespace {
 
+enum { MAX_DOCUMENT = 1 << 28 };
 enum { TARGET_VERTICES = 34962, TARGET_INDICES = 34963 };
 
 /* One grey pixel, in the place of an image that has not arrived. */
@@ -42,8 +45,11 @@ private:
     gltf_bytes bin;
     std::vector<size_t> free_accessors, free_views; /* the last is next */
     std::map<uint32_t, std::unique_ptr<scene_geometry>> meshes;
-    std::vector<size_t> resource_start; /* in bin */
+    std::vector<size_t> resource_start; /* in bin, or in the stream */
+    std::vector<bool> in_stream;        /* by resource */
+    std::vector<size_t> image_views;    /* that show one of these */
 
+    void read_document(asset_bytes *plain);
     void open();
     std::vector<size_t> free_list(const char *name);
     size_t place(const char *list, std::vector<size_t> &free,
@@ -59,6 +65,7 @@ private:
     void resources();
     void move_views();
     void drop_marks();
+    void add_stream();
     void put_glb(const std::string &json, asset_bytes *out) const;
 };
 
@@ -81,17 +88,33 @@ std::vector<size_t> writer::free_list(const char *name)
     return numbers;
 }
 
-void writer::open()
+/* As text, at most as long as a document may be. */
+void writer::read_document(asset_bytes *plain)
 {
     const pmesh_scene_bytes text = pmesh_scene_document(scene);
+    const auto size = static_cast<size_t>(text.size);
+    pmesh_scene_header header = {};
+
+    if (!text.data || text.arrived < text.size)
+        throw std::runtime_error("cut off before the scene's document");
+    pmesh_scene_get_header(scene, &header);
+    if (header.document_form == PMESH_DOCUMENT_PLAIN)
+        asset_put(plain, text.data, size);
+    else if (!unpack_zlib(text.data, size, MAX_DOCUMENT, plain))
+        throw std::runtime_error("the document cannot be unpacked");
+}
+
+void writer::open()
+{
+    asset_bytes plain = {};
+    const std::unique_ptr<asset_bytes, void (*)(asset_bytes *)> text(
+        &plain, asset_bytes_free);
     gltf_source source = {};
     asset unused = {};
     asset_error error;
 
-    if (!text.data || text.arrived < text.size)
-        throw std::runtime_error("cut off before the scene's document");
-    if (!gltf_open(text.data, static_cast<size_t>(text.size), &source, &unused,
-                   &error))
+    read_document(&plain);
+    if (!gltf_open(plain.data, plain.size, &source, &unused, &error))
         throw std::runtime_error(std::string("the document is no glTF: ") +
                                  error.what);
     doc = gltf_document::parse(source.json, source.json + source.json_size);
@@ -207,7 +230,8 @@ void writer::primitive(gltf_document &p)
                            name == "POSITION");
         p["targets"].push_back(std::move(to));
     }
-    gltf_erase_extension(p, GLTF_PROGRESSIVE);
+    if (!style.stream)
+        gltf_erase_extension(p, GLTF_PROGRESSIVE);
 }
 
 void writer::primitives()
@@ -294,6 +318,12 @@ void writer::resources()
         missing_images(missing);
     for (uint32_t i = 0; i < header.resource_count; i++) {
         const pmesh_scene_bytes r = pmesh_scene_resource(scene, i);
+        if (style.stream && image[i]) {
+            resource_start.push_back(style.resource_offsets[i]);
+            in_stream.push_back(true);
+            continue;
+        }
+        in_stream.push_back(false);
         align(8);
         resource_start.push_back(bin.size());
         if (!missing[i])
@@ -313,8 +343,11 @@ void writer::move_views()
             throw std::runtime_error("a view is no object");
         if (!view.contains("buffer"))
             continue;
-        const size_t start =
-            resource_start.at(view["buffer"].get<size_t>());
+        const auto number = view["buffer"].get<size_t>();
+        const size_t start = resource_start.at(number);
+        if (in_stream[number])
+            image_views.push_back(
+                static_cast<size_t>(&view - &doc["bufferViews"][0]));
         view["buffer"] = 0;
         view["byteOffset"] = start + view.value("byteOffset", size_t{ 0 });
     }
@@ -330,6 +363,24 @@ void writer::drop_marks()
     for (const size_t at : free_views)
         doc["bufferViews"][at] = { { "buffer", 0 }, { "byteLength", 1 } };
     gltf_erase_extension(doc, GLTF_PROGRESSIVE);
+}
+
+/* The last of all bytes, so that a reader can go on with it. */
+void writer::add_stream()
+{
+    align(4);
+    for (const size_t at : image_views) {
+        gltf_document &view = doc["bufferViews"][at];
+        view["byteOffset"] = bin.size() + view["byteOffset"].get<size_t>();
+    }
+    doc["extensions"][GLTF_PROGRESSIVE] = { { "bufferView",
+                                              doc["bufferViews"].size() } };
+    doc["extensionsUsed"].push_back(GLTF_PROGRESSIVE);
+    doc["bufferViews"].push_back({ { "buffer", 0 },
+                                   { "byteOffset", bin.size() },
+                                   { "byteLength", style.stream->size } });
+    bin.insert(bin.end(), style.stream->data,
+               style.stream->data + style.stream->size);
 }
 
 /* ---- the file ----------------------------------------------------------- */
@@ -384,6 +435,8 @@ void writer::write(asset_bytes *out)
     move_views();
     primitives();
     drop_marks();
+    if (style.stream)
+        add_stream();
     align(4);
     doc["buffers"] = { { { "byteLength", bin.size() } } };
     if (!style.glb)
@@ -399,7 +452,55 @@ void writer::write(asset_bytes *out)
         throw std::bad_alloc();
 }
 
+uint32_t get_u32(const uint8_t *p)
+{
+    return p[0] | static_cast<uint32_t>(p[1]) << 8 |
+           static_cast<uint32_t>(p[2]) << 16 |
+           static_cast<uint32_t>(p[3]) << 24;
+}
+
+/* The stream's view, out of the text of a GLB. Throws what the parser does. */
+bool find_view(const uint8_t *json, size_t json_size, size_t *offset,
+               size_t *size)
+{
+    const gltf_json doc = gltf_json::parse(json, json + json_size);
+    const gltf_json &view = doc.at("bufferViews")
+                                .at(doc.at("extensions")
+                                        .at(GLTF_PROGRESSIVE)
+                                        .at("bufferView")
+                                        .get<size_t>());
+    *offset = view.value("byteOffset", size_t{ 0 });
+    *size = view.at("byteLength").get<size_t>();
+    return view.at("buffer") == 0;
+}
+
 } // namespace
+
+bool scene_find_stream(const uint8_t *data, size_t data_size, size_t *offset,
+                       size_t *size)
+{
+    if (data_size < 20 || memcmp(data, "glTF", 4) != 0)
+        return false;
+    const size_t text = get_u32(data + 12), left = data_size - 20;
+    gltf_source source = {};
+    asset unused = {};
+    asset_error error;
+
+    if (get_u32(data + 4) != 2 || text > left ||
+        !gltf_open(data + 20, text, &source, &unused, &error))
+        return false;
+    try {
+        if (left - text < 8 || !find_view(data + 20, text, offset, size) ||
+            *offset > left - text - 8)
+            return false;
+    } catch (...) {
+        return false; /* a GLB of another kind */
+    }
+    const size_t most = left - text - 8 - *offset;
+    *size = *size < most ? *size : most;
+    *offset += 20 + text + 8;
+    return true;
+}
 
 bool scene_write(pmesh_scene *scene, scene_style style, asset_bytes *out,
                  asset *notes, asset_error *error)

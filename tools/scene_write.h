@@ -18,7 +18,18 @@ extern "C" {
 typedef struct scene_style {
     bool glb;     /* else .gltf, with a data URI */
     bool inflate; /* coarse levels, see pmesh_decoder_copy_inflated() */
+    /* NULL, or the scene's own file: it goes last into the buffer, and images
+     * are shown where they start in it. */
+    const asset_bytes *stream;
+    const uint64_t *resource_offsets;
 } scene_style;
+
+/*
+ * Whether this is a GLB with a stream as scene_write() puts it there, or the
+ * beginning of one; where the stream is, of which `size` bytes are there.
+ */
+bool scene_find_stream(const uint8_t *data, size_t data_size, size_t *offset,
+                       size_t *size);
 
 /*
  * Appends a glTF file to `out`. Of a scene that has not

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "encoder/pmesh_scene_encode.h"
 #include "format/crc32c.h"
 #include "format/cursor.h"
 #include "format/layout.h"
@@ -84,6 +85,18 @@ static void note_chunks(const shape_bytes *b, unsigned char seen[256])
     }
 }
 
+static int collect(void *user, const void *data, size_t size)
+{
+    shape_bytes *to = user;
+    uint8_t *all = realloc(to->data, to->size + size + 1);
+    if (!all)
+        return 1;
+    memcpy(all + to->size, data, size);
+    to->data = all;
+    to->size += size;
+    return 0;
+}
+
 static int bake(const golden_case *g, pmesh_topology topology,
                 uint32_t threads, shape_bytes *out)
 {
@@ -106,6 +119,44 @@ static int bake(const golden_case *g, pmesh_topology topology,
     else if (!strcmp(g->name, "blocks"))
         insert_skippable(out);
     return status == PMESH_OK;
+}
+
+/* Three meshes with a document and resources before and
+ * behind them. */
+static int bake_scene(uint32_t threads, shape_bytes *out)
+{
+    enum { MESHES = 3 };
+    static const golden_case cases[MESHES] = {
+        { "scene 0", SHAPE_SPHERE, 14, 30, PMESH_BALANCED, PMESH_SUBSET, 12 },
+        { "scene 1", SHAPE_TORUS, 24, 40, PMESH_QUALITY, PMESH_OPTIMAL, 11 },
+        { "scene 2", SHAPE_TERRAIN, 16, 20, PMESH_COMPACT, PMESH_SUBSET, 10 }
+    };
+    static const float scale[MESHES] = { 1, 0.25f, 3 };
+    static const char document[] = "document", early[] = "early";
+    static uint8_t late[40000]; /* more than one chunk takes */
+    const pmesh_scene_blob resources[] = { { early, sizeof early },
+                                           { late, sizeof late },
+                                           { NULL, 0 } };
+    shape_bytes streams[MESHES];
+    pmesh_scene_mesh_input meshes[MESHES];
+    int good = 1;
+    for (int i = 0; i < MESHES; i++) {
+        good = bake(&cases[i], PMESH_TOPOLOGY_AUTO, threads, &streams[i]) &&
+               good;
+        meshes[i] = (pmesh_scene_mesh_input){ streams[i].data,
+                                              streams[i].size, scale[i] };
+    }
+    const pmesh_scene_input scene = {
+        .meshes = meshes, .mesh_count = MESHES,
+        .document = { document, sizeof document },
+        .resources = resources, .resource_count = 3, .early_count = 1
+    };
+    *out = (shape_bytes){ 0 };
+    good = good && pmesh_scene_encode(&scene, NULL, collect, out, NULL) ==
+                       PMESH_OK;
+    for (int i = 0; i < MESHES; i++)
+        free(streams[i].data);
+    return good;
 }
 
 static int write_file(const char *dir, const char *name, const shape_bytes *b)
@@ -161,6 +212,11 @@ int main(int argc, char **argv)
     }
     const uint32_t threads =
         argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1;
+    shape_bytes scene;
+    if (!bake_scene(threads, &scene) ||
+        !write_file(argv[1], "scene", &scene))
+        return 1;
+    free(scene.data);
     return !bake_all(kept, sizeof kept / sizeof *kept, PMESH_TOPOLOGY_KEEP,
                      threads, argv[1], seen) ||
            !bake_all(joined, sizeof joined / sizeof *joined,

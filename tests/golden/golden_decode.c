@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "decoder/pmesh_decode.h"
+#include "decoder/pmesh_scene.h"
 
 static const uint64_t hash_start = 0xcbf29ce484222325u; /* FNV-1a */
 
@@ -269,6 +269,96 @@ static pmesh_status print_hashes(const uint8_t *data, size_t size)
     return status;
 }
 
+/* ---- scenes ------------------------------------------------------------ */
+
+static uint64_t hash_bytes(pmesh_scene_bytes b)
+{
+    uint64_t h = hash_number(hash_start, b.size, 8);
+    for (uint64_t i = 0; i < b.arrived; i++)
+        h = hash_number(h, b.data[i], 1);
+    return h;
+}
+
+static uint64_t hash_scene_header(pmesh_scene *s, const pmesh_scene_header *h)
+{
+    uint64_t hash = hash_number(hash_start, h->document_form, 1);
+    for (uint32_t i = 0; i < h->level_count; i++) {
+        hash = hash_number(hash, h->levels[i].bytes, 8);
+        hash = hash_number(hash, h->levels[i].faces, 8);
+        hash = hash_number(hash, h->levels[i].vertices, 8);
+        hash = hash_f32(hash, h->levels[i].error);
+    }
+    for (uint32_t i = 0; i < h->mesh_count; i++)
+        hash = hash_f32(hash, pmesh_scene_scale(s, i));
+    return hash;
+}
+
+static void print_scene(pmesh_scene *s, size_t size)
+{
+    pmesh_scene_header h = { 0 };
+    pmesh_scene_get_header(s, &h);
+    printf("  scene %5zu bytes content %016" PRIx64 " header %016" PRIx64
+           " document %016" PRIx64 "\n", size, h.content_hash,
+           hash_scene_header(s, &h), hash_bytes(pmesh_scene_document(s)));
+    for (uint32_t i = 0; i < h.resource_count; i++)
+        printf("  resource %016" PRIx64 "\n",
+               hash_bytes(pmesh_scene_resource(s, i)));
+}
+
+/* What the target makes of each mesh that is there. */
+static void move_scene(pmesh_scene *s, const char *name,
+                       pmesh_scene_target target)
+{
+    const pmesh_changes unchanged = { 0 };
+    pmesh_scene_shown shown;
+    pmesh_scene_header h;
+    if (pmesh_scene_refine(s, &target, &shown) != PMESH_OK ||
+        pmesh_scene_get_header(s, &h) != PMESH_OK)
+        return;
+    printf("  %s: %" PRIu32 " meshes, %" PRIu64 " faces, error %016" PRIx64
+           "\n", name, shown.meshes, shown.faces,
+           hash_f64(hash_start, shown.error));
+    for (uint32_t i = 0; i < h.mesh_count; i++) {
+        pmesh_decoder *dec = pmesh_scene_mesh(s, i);
+        pmesh_header file;
+        if (!dec || pmesh_decoder_header(dec, &file) != PMESH_OK)
+            continue;
+        float *room = malloc(PMESH_MAX_COMPONENTS * sizeof *room *
+                             (size_t)file.vertices);
+        if (room)
+            print_state(dec, "", &file, &unchanged, room);
+        free(room);
+    }
+}
+
+static pmesh_status print_scene_hashes(const uint8_t *data, size_t size)
+{
+    pmesh_scene *s;
+    pmesh_scene_header h;
+    pmesh_status status = pmesh_scene_create(&s, NULL);
+    if (status != PMESH_OK)
+        return status;
+    for (size_t at = 0; at < size / 12; at++)
+        pmesh_scene_feed(s, data + at, 1);
+    move_scene(s, "part", (pmesh_scene_target){ 0 });
+    status = pmesh_scene_feed(s, data + size / 12, size - size / 12);
+    if (status == PMESH_OK && pmesh_scene_get_header(s, &h) == PMESH_OK) {
+        const pmesh_scene_level *some = &h.levels[h.level_count / 2];
+        const double error = (double)some->error;
+        move_scene(s, "all", (pmesh_scene_target){ 0 });
+        move_scene(s, "base", (pmesh_scene_target){ .faces = 1 });
+        move_scene(s, "faces",
+                   (pmesh_scene_target){ .faces = some->faces + 5 });
+        move_scene(s, "error", (pmesh_scene_target){ .error = error });
+        move_scene(s, "bytes", (pmesh_scene_target){ .bytes = some->bytes });
+        print_scene(s, size);
+    } else {
+        fprintf(stderr, "%s\n", pmesh_scene_error(s).rule);
+    }
+    pmesh_scene_destroy(s);
+    return status;
+}
+
 /* The bytes of a golden file, all of which are small; 0 if it is none. */
 static size_t read_file(const char *path, uint8_t *data, size_t capacity)
 {
@@ -291,7 +381,10 @@ int main(int argc, char **argv)
         printf("%s\n", slash ? slash + 1 : argv[i]);
         const size_t size = read_file(argv[i], data, sizeof data);
         const pmesh_status status =
-            size ? print_hashes(data, size) : PMESH_E_ARGUMENT;
+            size == 0                                   ? PMESH_E_ARGUMENT
+            : pmesh_scene_probe(data, size) == PMESH_OK
+                ? print_scene_hashes(data, size)
+                : print_hashes(data, size);
         if (status != PMESH_OK) {
             fprintf(stderr, "%s: %s\n", argv[i],
                     size ? pmesh_status_text(status)

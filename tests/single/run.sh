@@ -18,9 +18,9 @@ build() {
         tests/single/upload.c "$single/pmesh_decode.c" -o "$dir/$program"
 }
 
-# Each golden file, whole and up to 60 faces, as `program` shows it.
+# Each golden mesh, whole and up to 60 faces, as `program` shows it.
 tell() {
-    for file in tests/golden/*.pmesh; do
+    for file in $(ls tests/golden/*.pmesh | grep -v /scene); do
         "$dir/$1" "$file" && "$dir/$1" "$file" 60 || return 1
     done
 }

@@ -172,6 +172,14 @@ TEST(uploading_the_ranges_reproduces_the_mesh)
         }
 }
 
+TEST(ten_thousand_random_steps_reproduce_the_mesh)
+{
+    scene s;
+    bake(&s, SHAPE_TORUS, 8, PMESH_SUBSET, 0);
+    walk(&s, 10000);
+    scene_free(&s);
+}
+
 static int falling(const void *a, const void *b)
 {
     const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;

@@ -76,6 +76,7 @@ static made *make(size_t count, int lossless)
     m->input = (pmesh_scene_input){
         .meshes = m->meshes, .mesh_count = count,
         .document = { m->document, sizeof m->document },
+        .document_form = PMESH_DOCUMENT_ZLIB,
         .resources = m->resources, .resource_count = RESOURCES,
         .early_count = 1
     };
@@ -126,6 +127,7 @@ TEST(scene_comes_back_whole)
             CHECK(m->report.bytes == m->file.size);
             CHECK(pmesh_scene_get_header(s, &h) == PMESH_OK);
             CHECK(h.mesh_count == MESHES && h.resource_count == RESOURCES);
+            CHECK(h.document_form == PMESH_DOCUMENT_ZLIB);
             CHECK(pmesh_scene_refine(s, NULL, &shown) == PMESH_OK);
             CHECK(shown.faces == m->report.faces && shown.meshes == MESHES);
             CHECK(h.levels[h.level_count - 1].faces == shown.faces);
@@ -240,6 +242,33 @@ TEST(scene_budgets_are_met_as_well_as_levels_can)
         pmesh_scene_refine(s, &(pmesh_scene_target){ .error = bound }, &shown);
         CHECK(!(bound > 0) || shown.error <= bound);
     }
+    pmesh_scene_destroy(s);
+    unmake(m);
+}
+
+TEST(scene_shares_what_refine_would_show)
+{
+    enum { COUNT = 12 };
+    made *m = make(COUNT, 0);
+    pmesh_status status;
+    pmesh_scene_shown all;
+    uint32_t share[COUNT];
+    pmesh_scene *s = decode(m->file.data, m->file.size, 4096, &status);
+    pmesh_scene_refine(s, NULL, &all);
+    for (uint64_t faces = 1; faces < all.faces; faces += all.faces / 7) {
+        const pmesh_scene_target target = { .faces = faces };
+        CHECK(pmesh_scene_refine(s, &target, NULL) == PMESH_OK);
+        CHECK(pmesh_scene_share(s, &target, share) == PMESH_OK);
+        for (uint32_t i = 0; i < COUNT; i++) {
+            pmesh_view view;
+            pmesh_decoder *dec = pmesh_scene_mesh(s, i);
+            CHECK(pmesh_decoder_mesh(dec, &view) == PMESH_OK);
+            CHECK(view.face_count <= share[i] && view.face_count + 2 > share[i]);
+        }
+    }
+    pmesh_scene_destroy(s);
+    s = decode(m->file.data, 8, 8, &status);
+    CHECK(pmesh_scene_share(s, NULL, share) == PMESH_NEED_DATA);
     pmesh_scene_destroy(s);
     unmake(m);
 }
@@ -363,6 +392,13 @@ TEST(scene_header_is_checked)
     CHECK(status_of(&b) == PMESH_E_LIMIT);
     put_header(&b, &h, mesh, PMESH_MAX_FILE);
     CHECK(status_of(&b) < 0);
+    h.document_form = PMESH_DOCUMENT_ZLIB;
+    put_header(&b, &h, mesh, 5);
+    CHECK(status_of(&b) == PMESH_NEED_DATA);
+    h.document_form = PMESH_DOCUMENT_ZLIB + 1;
+    put_header(&b, &h, mesh, 5);
+    CHECK(status_of(&b) == PMESH_E_CORRUPT);
+    h = plain_head();
     h.chunk_size = PMESH_MAX_CHUNK_SIZE + 1;
     put_header(&b, &h, mesh, 5);
     CHECK(status_of(&b) == PMESH_E_CORRUPT);

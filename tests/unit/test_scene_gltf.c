@@ -7,6 +7,7 @@
 #include "encoder/pmesh_scene_encode.h"
 #include "tests/unit/shapes.h"
 #include "tests/unit/test.h"
+#include "tools/pack.h"
 #include "tools/scene_parts.h"
 #include "tools/scene_write.h"
 
@@ -144,4 +145,45 @@ TEST(scene_is_worth_more_than_a_mesh_if_it_has_looks)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         CHECK(scene_is_worth_it((const uint8_t *)cases[i].text,
                                 strlen(cases[i].text)) == cases[i].worth);
+}
+
+/* ---- packed documents --------------------------------------------------- */
+
+TEST(packed_bytes_come_back)
+{
+    static uint8_t data[200000];
+    const size_t sizes[] = { 0, 1, 1000, sizeof data };
+    for (size_t i = 0; i < sizeof data; i++)
+        data[i] = (uint8_t)(i / 100);
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        asset_bytes packed = { 0 }, plain = { 0 };
+        CHECK(pack_zlib(data, sizes[i], &packed));
+        CHECK(unpack_zlib(packed.data, packed.size, sizes[i], &plain));
+        CHECK(plain.size == sizes[i]);
+        CHECK(sizes[i] == 0 || memcmp(plain.data, data, sizes[i]) == 0);
+        asset_bytes_free(&plain);
+        CHECK(sizes[i] == 0 || !unpack_zlib(packed.data, packed.size,
+                                            sizes[i] - 1, &plain));
+        asset_bytes_free(&plain);
+        asset_bytes_free(&packed);
+    }
+}
+
+TEST(packed_bytes_that_are_damaged_or_cut_off_are_refused)
+{
+    static const char text[] = "{\"asset\": {\"version\": \"2.0\"}}";
+    asset_bytes packed = { 0 };
+    CHECK(pack_zlib(text, sizeof text, &packed));
+    for (size_t i = 0; i < packed.size; i++) {
+        asset_bytes plain = { 0 };
+        CHECK(!unpack_zlib(packed.data, i, 1000, &plain));
+        asset_bytes_free(&plain);
+        packed.data[i] ^= 0x10;
+        const bool good = unpack_zlib(packed.data, packed.size, 1000, &plain);
+        CHECK(!good || (plain.size == sizeof text &&
+                        memcmp(plain.data, text, sizeof text) == 0));
+        asset_bytes_free(&plain);
+        packed.data[i] ^= 0x10;
+    }
+    asset_bytes_free(&packed);
 }

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The WebAssembly decoder says what the native one says.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { readFileSync, readdirSync } from "node:fs";
 import { test } from "node:test";
-import { pathToFileURL } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 import { Decoder, PmeshError, supported } from "pmesh";
 
 const golden = pathToFileURL(process.env.PMESH_GOLDEN);
 const read = (name) => new Uint8Array(readFileSync(new URL(name, golden)));
-const names = readdirSync(golden).filter((name) => name.endsWith(".pmesh"));
+// But for scenes, which scene.test.mjs is for: the ninth byte tells.
+const names = readdirSync(golden).filter((name) =>
+    name.endsWith(".pmesh") && read(name)[8] !== 8);
 
 // FNV-1a over 32-bit numbers, as tests/golden/golden_decode.c.
 function hash(h, words) {
@@ -163,6 +166,41 @@ test("memory does not grow behind the header, nor over walks", async () => {
     }
     assert.equal(decoder.memory, before);
     assert.ok(positions.length > 0, "views are not detached");
+});
+
+test("swells coarse levels and leaves the full mesh", async () => {
+    const decoder = await Decoder.create({ inflate: true });
+    decoder.feed(read("closed.pmesh"));
+    const { memory } = decoder;
+    for (const faces of [100, 1000, 0]) {
+        decoder.refine({ faces });
+        const n = 3 * decoder.vertexCount, swollen = decoder.inflated();
+        const moved = decoder.positions.subarray(0, n)
+            .filter((x, i) => x !== swollen[i]).length;
+        assert.ok(faces > 0 ? moved > n / 10 : moved === 0);
+    }
+    assert.equal(decoder.memory, memory);
+    const other = await Decoder.create();
+    other.feed(read("closed.pmesh"));
+    assert.throws(() => other.inflated(), { code: "argument" });
+});
+
+test("inflates to the bits of pmesh extract --inflate", async () => {
+    const decoder = await Decoder.create({ inflate: true });
+    decoder.feed(read("closed.pmesh"));
+    decoder.refine({ faces: 3000 });
+    const swollen = decoder.inflated();
+    const text = execFileSync(process.env.PMESH, ["extract", "-q", "--inflate",
+        fileURLToPath(new URL("closed.pmesh", golden)), "--faces", "3000", "--format", "obj", "-o",
+        "-"], { encoding: "utf8", maxBuffer: 2 ** 26 });
+    const native = text.split("\n").filter((line) => line.startsWith("v "))
+        .flatMap((line) => line.split(" ").slice(1, 4).map(Math.fround));
+    const key = (at, from) => from.slice(3 * at, 3 * at + 3).join();
+    const all = new Set();
+    for (let v = 0; 3 * v < native.length; v++)
+        all.add(key(v, native));
+    for (let v = 0; v < decoder.vertexCount; v++)
+        assert.ok(all.has(key(v, swollen)), `vertex ${v}`);
 });
 
 test("materials, morph, bounds and rays", async () => {

@@ -50,7 +50,16 @@ done
 tools/web/build.sh $web/pmesh 0.0.0 || exit 1
 "$PMESH" sample -o "$dir/a.ply" --faces 70k &&
     "$PMESH" bake -q "$dir/a.ply" -o "$dir/a.pmesh" &&
-    "$PMESH" bake -q "$dir/a.ply" -o "$dir/b.pmesh" --no-attributes || exit 1
+    "$PMESH" bake -q "$dir/a.ply" -o "$dir/b.pmesh" --no-attributes &&
+    "$PMESH" bake -q "$dir/a.ply" -o "$dir/d.pmesh" --base draco || exit 1
+mkdir -p "$dir/zoo/tail" && python3 tests/scene/zoo.py "$dir/zoo" || exit 1
+for scene in "$dir"/zoo/*.glb; do
+    "$PMESH" bake -q "$scene" -o "${scene%.glb}.pmesh" &&
+        "$PMESH" bake -q "$scene" -o "$dir/zoo/tail/${scene##*/}" || exit 1
+done
+PMESH_ZOO=$dir/zoo
+PMESH_DRACO=$dir/d.pmesh
+export PMESH_ZOO PMESH_DRACO
 PMESH_GOLDEN=$PWD/tests/golden/ PMESH_SAMPLE=$dir/a.pmesh
 PMESH_OTHER=$dir/b.pmesh
 export PMESH PMESH_GOLDEN PMESH_SAMPLE PMESH_OTHER
@@ -80,9 +89,13 @@ if ! cmp -s $lock $web/browser/installed; then
         cp $lock $web/browser/installed || exit 1
 fi
 tools/web/viewer/build.sh $web/pmesh $web/viewer.html || exit 1
-cp tests/web/server.mjs tests/web/browser/*.mjs $web/browser/
+cp tests/web/server.mjs tests/web/glb.mjs tests/web/browser/*.mjs $web/browser/
 ln -sfn ../viewer/node_modules/three $web/node_modules/three
 run_tests $web/browser/three.check.mjs
+run_tests $web/browser/gltf.check.mjs
 run_tests $web/browser/worker.check.mjs
 run_tests $web/browser/viewer.check.mjs
+THREE=$PWD/$web/viewer/node_modules/three
+export THREE
+run_tests $web/browser/progressive.check.mjs
 finish

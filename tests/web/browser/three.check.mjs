@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // pmesh/three without a picture: what three.js is told to draw and to send.
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { test } from "node:test";
 import { MeshBasicMaterial, Raycaster, Vector3 } from "three";
 import { open } from "pmesh";
+import { dracoBase } from "pmesh/draco";
 import { ProgressiveMesh } from "pmesh/three";
 import { serve } from "./server.mjs";
 
@@ -124,6 +127,74 @@ test("the sphere holds every level, and rays meet what is visible", async () => 
         assert.ok(hits.length > 0);
         assert.ok(hits.every(({ faceIndex }) => faceIndex < mesh.faceCount));
     }
+});
+
+test("morphs evenly between levels, both ways", async () => {
+    const mesh = await open(sample, { morph: true });
+    await mesh.load();
+    mesh.refine({ faces: 2000 });
+    const object = new ProgressiveMesh(mesh, new MeshBasicMaterial(),
+        { morph: true });
+    const graphics = card(object);
+    const { position } = object.geometry.attributes;
+    for (const [faces, up] of [[9000, true], [1000, false]]) {
+        object.morphTo({ faces }, 200);
+        const from = position.array.slice(0, 3 * mesh.vertexCount);
+        const shown = mesh.faceCount;
+        assert.equal(object.tick(100), true);
+        graphics.render();
+        const half = position.array.slice(0, from.length);
+        assert.equal(mesh.faceCount, shown, "no faces come or go on the way");
+        const to = up ? mesh.positions : mesh.morph({ faces });
+        for (let i = 0; i < from.length; i++)
+            assert.ok(Math.abs((from[i] + to[i]) / 2 - half[i]) < 1e-5);
+        assert.equal(object.tick(150), false);
+        assert.ok(Math.abs(mesh.faceCount - faces) < 3);
+        graphics.render();
+        graphics.check();
+        const n = 3 * mesh.vertexCount;
+        assert.deepEqual(position.array.subarray(0, n),
+            mesh.positions.subarray(0, n));
+    }
+    assert.equal(object.tick(10), false);
+});
+
+test("inflated positions are sent whole", async () => {
+    const mesh = await open(readFileSync(`${PMESH_GOLDEN}closed.pmesh`),
+        { inflate: true });
+    const object = new ProgressiveMesh(mesh, new MeshBasicMaterial(),
+        { inflate: true });
+    const graphics = card(object);
+    graphics.render();
+    await object.stream({ faces: 3000 }, () => {
+        graphics.render();
+        graphics.check();
+    });
+    const { position } = object.geometry.attributes;
+    assert.notDeepEqual(position.array.subarray(0, 3000),
+        mesh.positions.subarray(0, 3000));
+    assert.deepEqual(position.array.subarray(0, 3000),
+        mesh.inflated().subarray(0, 3000));
+});
+
+test("a base mesh by Draco, if the page has it", async () => {
+    const require = createRequire(import.meta.url);
+    const draco = await require("draco3d").createDecoderModule();
+    const data = readFileSync(process.env.PMESH_DRACO);
+    await assert.rejects(open(data), { code: "unsupported" });
+    const mesh = await open(data, { base: dracoBase(draco) });
+    assert.equal(mesh.header.baseCoder, "draco");
+    await mesh.load();
+    const text = execFileSync(process.env.PMESH, ["extract", "-q",
+        process.env.PMESH_DRACO, "--format", "obj", "-o", "-"],
+    { encoding: "utf8", maxBuffer: 2 ** 26 });
+    const native = new Set(text.split("\n").filter((l) => l.startsWith("v "))
+        .map((l) => l.split(" ").slice(1, 4).map(Math.fround).join()));
+    for (let v = 0; v < mesh.vertexCount; v++)
+        assert.ok(native.has(mesh.positions.subarray(3 * v, 3 * v + 3).join()));
+    for (const base of [() => null, () => { throw new Error("no"); },
+        () => ({ positions: [1], indices: [] })])
+        await assert.rejects(open(data, { base }), { code: "corrupt" });
 });
 
 test("a file that is replaced gets new buffers", async () => {

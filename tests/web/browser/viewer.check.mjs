@@ -10,7 +10,8 @@ import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
-const { PMESH, PMESH_SAMPLE, CHROMIUM, SHOTS } = process.env;
+const { PMESH, PMESH_GOLDEN, PMESH_SAMPLE, PMESH_ZOO, CHROMIUM, SHOTS } =
+    process.env;
 const FLAGS = ["--no-sandbox", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update",
     "--disable-sync", "--enable-precise-memory-info", "--use-angle=swiftshader",
@@ -130,6 +131,82 @@ test("sliders move faces and bytes", async () => {
     await page.fill("#bytes", "0.5");
     const level = await page.evaluate(() => viewer.mesh.error);
     assert.ok(level > 0);
+});
+
+test("levels morph, and the last frame is the level itself", async () => {
+    await setFaces(2000);
+    await page.check("#morph");
+    const seen = await page.evaluate(async () => {
+        const { mesh, stage } = viewer, list = [];
+        const { position } = stage.object.geometry.attributes;
+        viewer.choose({ faces: 20_000 });
+        for (let i = 0; i < 200 && list.at(-1) !== 0; i++) {
+            list.push(position.array.subarray(0, 3 * mesh.vertexCount)
+                .reduce((n, x, k) => n + (x !== mesh.positions[k]), 0));
+            await new Promise(requestAnimationFrame);
+        }
+        return list;
+    });
+    assert.ok(seen[0] > 1000 && seen.at(-1) === 0, `${seen}`);
+    assert.equal(await faceCount(), native(20_000));
+    await page.evaluate(() => viewer.choose({ faces: 500 }));
+    await page.waitForFunction((n) => viewer.mesh.faceCount === n, native(500));
+    assert.equal(await page.inputValue("#face-count"), String(native(500)));
+    await page.uncheck("#morph");
+});
+
+test("coarse levels swell", async () => {
+    const round = join(SHOTS, "round.html");
+    execFileSync(PMESH, ["view", `${PMESH_GOLDEN}closed.pmesh`, "-o", round,
+        "-q"]);
+    const other = await openPage(pathToFileURL(round).href);
+    await other.waitForFunction(() => globalThis.viewer?.finished);
+    await other.fill("#face-count", "200");
+    await settle(other);
+    const size = () => other.evaluate(() => {
+        const { array } = viewer.stage.object.geometry.attributes.position;
+        return array.subarray(0, 3 * viewer.mesh.vertexCount)
+            .reduce((sum, x) => sum + x * x, 0);
+    });
+    const before = await size();
+    writeFileSync(join(SHOTS, "plain.png"), await other.screenshot());
+    await other.check("#swell");
+    await settle(other);
+    writeFileSync(join(SHOTS, "swollen.png"), await other.screenshot());
+    assert.ok(await size() > before);
+    assert.equal(await other.evaluate(() => viewer.mesh.faceCount), 200);
+    await other.check("#morph");
+    assert.equal(await other.isChecked("#swell"), false);
+    await other.close();
+});
+
+test("a scene is shown with its materials", async () => {
+    const html = join(SHOTS, "scene.html");
+    execFileSync(PMESH, ["view", join(PMESH_ZOO, "textures.pmesh"), "-o", html,
+        "-q"]);
+    const other = await openPage(pathToFileURL(html).href);
+    await other.waitForFunction(() => globalThis.viewer?.finished, null,
+        { timeout: 30_000 });
+    await settle(other);
+    writeFileSync(join(SHOTS, "scene.png"), await other.screenshot());
+    const state = () => other.evaluate(() => ({
+        faces: viewer.mesh.faceCount, all: viewer.mesh.header.faces,
+        base: viewer.mesh.header.baseFaces,
+        drawn: viewer.stage.info.render.triangles,
+    }));
+    const full = await state();
+    assert.equal(full.faces, full.all);
+    assert.equal(full.drawn, full.all);
+    await other.fill("#faces", "0");
+    await settle(other);
+    const least = await state();
+    assert.equal(least.faces, least.base);
+    assert.ok(least.drawn < full.drawn);
+    assert.equal(await other.isVisible("#tint"), false);
+    await other.check("#wire");
+    await settle(other);
+    assert.ok(await other.evaluate(() => viewer.stage.info.render.lines) > 0);
+    await other.close();
 });
 
 test("keys: sliders, toggles, turning", async () => {

@@ -1,114 +1,54 @@
 // SPDX-License-Identifier: MIT
-// The decoder: bytes in, any level of detail out. One WebAssembly instance for
-// each mesh; the lists of numbers it answers with are told in pmesh_wasm.c.
+// The decoder: bytes in, any level of detail out. The lists of numbers that the
+// module answers with are told in pmesh_wasm.c.
+import { Instance, PmeshError, compile } from "./module.js";
 import { compressed } from "./wasm.js";
 
 const NEED_DATA = 1, MORE = 2, E_MEMORY = -2;
-const INPUT_SIZE = 65536;
 const KINDS = ["normal", "texcoord", "color", "generic"];
-
-// A function that returns a vector, to see whether there are any.
-const VECTOR = Uint8Array.of(0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1,
-    123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11);
-
-export const supported = typeof WebAssembly === "object" &&
-    typeof DecompressionStream === "function" && WebAssembly.validate(VECTOR);
 
 let module;
 
 // The compiled module, made at the first call.
 export function ready() {
-    module ??= compile();
+    module ??= compile(compressed);
     return module;
 }
 
-async function compile() {
-    const text = atob(compressed);
-    const bytes = Uint8Array.from(text, (c) => c.charCodeAt(0));
-    const stream = new Blob([bytes]).stream()
-        .pipeThrough(new DecompressionStream("gzip"));
-    return WebAssembly.compile(await new Response(stream).arrayBuffer());
-}
-
-// code: the name of a status ("corrupt", "limit", ...) or "http", "aborted".
-export class PmeshError extends Error {
-    constructor(message, code, offset = 0) {
-        super(message);
-        this.name = "PmeshError";
-        this.code = code;
-        this.offset = offset;
-    }
-}
-
-const CODES = {
-    "-1": "argument", "-2": "memory", "-3": "limit", "-10": "magic",
-    "-11": "version", "-12": "corrupt", "-13": "checksum",
-    "-14": "unsupported",
-};
-
-export class Decoder {
-    #wasm;
-    #withMorph;
+// A mesh at any level of what has been decoded of it.
+export class Detail {
+    #instance;
+    #mesh; // its address there
+    #options;
     #header = null;
     #at = null; // of the buffers
 
-    // maxMemory: bytes that a file may need for decoding. morph: morph() will
-    // be called.
-    static async create({ maxMemory = 2 ** 30, morph = false } = {}) {
-        return new Decoder(await ready(), maxMemory, morph);
+    constructor(instance, mesh, { morph = false, inflate = false } = {}) {
+        this.#instance = instance;
+        this.#mesh = mesh;
+        this.#options = { morph, inflate };
     }
 
-    constructor(compiled, maxMemory, morph) {
-        this.#wasm = new WebAssembly.Instance(compiled).exports;
-        this.#withMorph = morph;
-        if (this.#wasm.create(maxMemory) < 0)
-            throw new PmeshError("out of memory", "memory");
+    get #wasm() {
+        return this.#instance.exports;
     }
 
     #list(at, count) {
-        return new Float64Array(this.#wasm.memory.buffer, at, count);
+        return this.#instance.list(at, count);
     }
 
-    #text(at) {
-        const bytes = new Uint8Array(this.#wasm.memory.buffer, at);
-        return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
-    }
-
-    #fail(status) {
-        const text = this.#text(this.#wasm.status_text(status));
-        const rule = this.#text(this.#wasm.rule());
-        const offset = this.#list(this.#wasm.state(), 6)[5];
-        throw new PmeshError(
-            rule ? `byte ${offset}: ${text} (${rule})` : text,
-            CODES[status] ?? "unknown", offset);
-    }
-
-    // Takes the next bytes; true once the file is complete. Throws where they
-    // are damaged; what came before stays usable.
-    feed(bytes) {
-        let status = NEED_DATA;
-        for (let at = 0; at < bytes.length && status === NEED_DATA;
-            at += INPUT_SIZE) {
-            const part = bytes.subarray(at, at + INPUT_SIZE);
-            new Uint8Array(this.#wasm.memory.buffer, this.#wasm.input(),
-                part.length).set(part);
-            status = this.#wasm.feed(part.length);
-            this.#takeHeader();
-        }
-        if (status < 0)
-            this.#fail(status);
-        return status === 0;
-    }
-
-    #takeHeader() {
-        const at = this.#header ? 0 : this.#wasm.info();
+    // Makes the buffers when the header has arrived.
+    takeHeader() {
+        const at = this.#header ? 0 : this.#wasm.info(this.#mesh);
         if (at === 0)
             return;
         this.#header = readHeader(this.#list(at, 26 + 5 * 64 + 4 * 8));
-        if (this.#wasm.bind(this.#withMorph) < 0)
-            this.#fail(E_MEMORY);
+        const { morph, inflate } = this.#options;
+        if (this.#wasm.bind(this.#mesh, morph, inflate) < 0)
+            this.#instance.fail(E_MEMORY);
         const count = this.#header.attributes.length;
-        this.#at = Array.from(this.#list(this.#wasm.buffers(), 7 + count));
+        this.#at = Array.from(this.#list(this.#wasm.buffers(this.#mesh),
+            8 + count));
     }
 
     // Counts of full detail, grid, attributes and level table; null until the
@@ -119,17 +59,17 @@ export class Decoder {
 
     get progress() {
         const [bytes, faces, levels, exactVertices, complete] =
-            this.#list(this.#wasm.state(), 5);
+            this.#list(this.#wasm.state(this.#mesh), 5);
         return { bytes, faces, levels, exactVertices, complete: complete > 0 };
     }
 
     // Moves the visible mesh to { faces, error, bytes, maxOps }; null while
     // there is none, else the ranges that changed and whether more is left.
     refine({ faces = 0, error = 0, bytes = 0, maxOps = 0 } = {}) {
-        const status = this.#wasm.refine(faces, error, bytes, maxOps);
+        const status = this.#wasm.refine(this.#mesh, faces, error, bytes, maxOps);
         if (status === NEED_DATA)
             return null;
-        const at = this.#at[6], words = this.#wasm.memory.buffer;
+        const at = this.#at[7], words = this.#instance.buffer;
         const counts = new Uint32Array(words, at, 2);
         return {
             vertices: readRanges(words, at + 8, counts[0]),
@@ -139,7 +79,7 @@ export class Decoder {
     }
 
     #visible() {
-        return this.#list(this.#wasm.state(), 10).subarray(6);
+        return this.#list(this.#wasm.state(this.#mesh), 9).subarray(5);
     }
 
     get faceCount() {
@@ -156,12 +96,12 @@ export class Decoder {
     }
 
     #floats(at, count) {
-        return new Float32Array(this.#wasm.memory.buffer, at, count);
+        return new Float32Array(this.#instance.buffer, at, count);
     }
 
     #indices(at) {
         const Type = this.#at[1] === 2 ? Uint16Array : Uint32Array;
-        return new Type(this.#wasm.memory.buffer, at, 3 * this.#header.faces);
+        return new Type(this.#instance.buffer, at, 3 * this.#header.faces);
     }
 
     // Views into the module's memory, as large as full detail needs; refine()
@@ -178,7 +118,7 @@ export class Decoder {
     get attributes() {
         return this.#at && this.#header.attributes.map((attribute, i) => ({
             ...attribute,
-            values: this.#floats(this.#at[7 + i],
+            values: this.#floats(this.#at[8 + i],
                 attribute.components * this.#header.vertices),
         }));
     }
@@ -191,9 +131,9 @@ export class Decoder {
                 indices: this.indices,
                 groups: [{ material: 0, first: 0, count: this.faceCount }],
             };
-        const status = this.#wasm.sort();
+        const status = this.#wasm.sort(this.#mesh);
         const count = status === 0 ? this.#header.materialCount : 0;
-        const groups = readRanges(this.#wasm.memory.buffer, this.#at[4], count)
+        const groups = readRanges(this.#instance.buffer, this.#at[4], count)
             .map((group, material) => ({ material, ...group }));
         return { indices: this.#indices(this.#at[3]), groups };
     }
@@ -201,16 +141,27 @@ export class Decoder {
     // Where the visible vertices lie on the coarser mesh `target`: the start
     // of a geomorph. Needs { morph: true } at creation.
     morph({ faces = 0, error = 0, bytes = 0 } = {}) {
-        if (!this.#withMorph)
+        if (!this.#options.morph)
             throw new PmeshError("created without morph", "argument");
-        if (this.#wasm.morph(faces, error, bytes) !== 0)
+        if (this.#wasm.morph(this.#mesh, faces, error, bytes) !== 0)
             return null;
         return this.#floats(this.#at[5], 3 * this.vertexCount);
     }
 
+    // Positions of the visible vertices, swollen to the volume of the full mesh:
+    // for the eye. All change with every refine(). Needs { inflate: true } at
+    // creation. Views of the same memory each time.
+    inflated() {
+        if (!this.#options.inflate)
+            throw new PmeshError("created without inflate", "argument");
+        if (this.#wasm.inflate(this.#mesh) !== 0)
+            return null;
+        return this.#floats(this.#at[6], 3 * this.#header.vertices);
+    }
+
     // { minimum, maximum } of the visible mesh, or null.
     bounds() {
-        const at = this.#wasm.bounds();
+        const at = this.#wasm.bounds(this.#mesh);
         if (at === 0)
             return null;
         const [a, b, c, d, e, f] = this.#list(at, 6);
@@ -220,7 +171,7 @@ export class Decoder {
     // The first visible face that the ray meets: { face, distance, weights },
     // or null.
     raycast([x, y, z], [dx, dy, dz]) {
-        const at = this.#wasm.raycast(x, y, z, dx, dy, dz);
+        const at = this.#wasm.raycast(this.#mesh, x, y, z, dx, dy, dz);
         if (at === 0)
             return null;
         const [face, distance, ...weights] = this.#list(at, 5);
@@ -228,12 +179,51 @@ export class Decoder {
     }
 
     materialName(material) {
-        return this.#text(this.#wasm.material_name(material));
+        return this.#instance.text(this.#wasm.material_name(this.#mesh, material));
     }
 
     // Bytes of memory the instance holds.
     get memory() {
-        return this.#wasm.memory.buffer.byteLength;
+        return this.#instance.buffer.byteLength;
+    }
+}
+
+// The same of a file by itself.
+export class Decoder extends Detail {
+    #instance;
+
+    // maxMemory: bytes that a file may need for decoding. morph, inflate: the
+    // functions of that name will be called. base: decodes Draco base meshes.
+    static async create(options) {
+        return new Decoder(await ready(), options);
+    }
+
+    constructor(compiled, options) {
+        const instance = new Instance(compiled, options);
+        super(instance, instance.created, options);
+        this.#instance = instance;
+    }
+
+    // Takes the next bytes; true once the file is complete. Throws where they
+    // are damaged; what came before stays usable.
+    feed(bytes) {
+        return this.#instance.feed(bytes, () => this.takeHeader());
+    }
+
+    // Whether there is something to show.
+    get ready() {
+        return this.progress.levels > 0;
+    }
+
+    // Whether what is decoded meets the target; without limits: everything.
+    meets({ faces = 0, error = 0, bytes = 0 }, received) {
+        const done = this.progress;
+        if (done.complete || done.levels === 0)
+            return done.complete;
+        const fine = this.header.levels.findIndex((l) => l.error <= error);
+        return (faces > 0 && done.faces >= faces) ||
+            (bytes > 0 && (done.bytes >= bytes || received >= bytes)) ||
+            (error > 0 && fine >= 0 && done.levels > fine);
     }
 }
 

@@ -88,6 +88,10 @@ export class PmeshError extends Error {
 /** WebAssembly with vectors and DecompressionStream are there. */
 export const supported: boolean;
 
+/** Decodes a Draco buffer of so many vertices and faces; null: it is none. */
+export type BaseDecoder = (bytes: Uint8Array, vertices: number,
+    faces: number) => { positions: Int32Array; indices: Int32Array } | null;
+
 /** Compiles the decoder, once. */
 export function ready(): Promise<WebAssembly.Module>;
 
@@ -96,6 +100,11 @@ export interface DecoderOptions {
     maxMemory?: number;
     /** morph() will be called. */
     morph?: boolean;
+    /** inflated() will be called. */
+    inflate?: boolean;
+    /** For base meshes coded by Draco (dracoBase of "pmesh/draco"); without it
+        such files are refused. */
+    base?: BaseDecoder;
 }
 
 /** Buffers that refine() changes in place, as large as full detail needs. */
@@ -109,30 +118,37 @@ export interface Buffers {
     readonly error: number;
 }
 
-export class Decoder implements Buffers {
-    static create(options?: DecoderOptions): Promise<Decoder>;
-    constructor(module: WebAssembly.Module, maxMemory: number, morph: boolean);
-    readonly positions: Float32Array | null;
-    readonly indices: Uint16Array | Uint32Array | null;
-    readonly attributes: (Attribute & { values: Float32Array })[] | null;
-    readonly faceCount: number;
-    readonly vertexCount: number;
-    readonly error: number;
+export interface Sorted {
+    indices: Uint16Array | Uint32Array;
+    groups: (Range & { material: number })[];
+}
+
+/** A mesh at any level of what has been decoded of it. */
+export interface Detail extends Buffers {
     readonly header: Header | null;
     readonly progress: Progress;
+    /** Bytes of the module's memory. */
     readonly memory: number;
-    /** True once the file is complete; throws PmeshError where it is damaged. */
-    feed(bytes: Uint8Array): boolean;
     refine(target?: Target): Changes | null;
-    sorted(): {
-        indices: Uint16Array | Uint32Array;
-        groups: (Range & { material: number })[];
-    };
+    /** The visible faces sorted by material. */
+    sorted(): Sorted;
+    /** Where the visible vertices lie on a coarser mesh: for geomorphs. */
     morph(coarse?: Target): Float32Array | null;
+    /** Positions swollen to the volume of the full mesh; all change with every
+        refine(). As long as positions; views of the same memory each time. */
+    inflated(): Float32Array | null;
     bounds(): { minimum: Vector; maximum: Vector } | null;
     raycast(origin: Vector, direction: Vector):
         { face: number; distance: number; weights: Vector } | null;
     materialName(material: number): string;
+}
+
+export interface Decoder extends Detail {}
+export class Decoder {
+    static create(options?: DecoderOptions): Promise<Decoder>;
+    constructor(module: WebAssembly.Module, options?: DecoderOptions);
+    /** True once the file is complete; throws PmeshError where it is damaged. */
+    feed(bytes: Uint8Array): boolean;
 }
 
 export type Input = string | URL | Response | ReadableStream<Uint8Array> |
@@ -179,6 +195,9 @@ export class Mesh implements Buffers {
     stream(target?: Target): AsyncGenerator<Changes, void>;
     load(target?: Target): Promise<Changes | null>;
     refine(target?: Target): Changes | null;
+    sorted(): Sorted;
+    morph(coarse?: Target): Float32Array | null;
+    inflated(): Float32Array | null;
     stop(): void;
     dispose(): void;
 }

@@ -10,7 +10,7 @@
 //   no length      the mesh's header tells it (expected)
 //   compressed     Range would count other bytes: whole response, and skipped
 //   broken off     goes on, `retries` times without a byte in between
-import { PmeshError } from "./decoder.js";
+import { PmeshError } from "./module.js";
 
 const PREFIX = 4096; // bytes kept to recognise a file by
 const PIECE = 65536;

@@ -1,29 +1,32 @@
 // SPDX-License-Identifier: MIT
-// pmesh/three: a progressive mesh as an object of three.js. Buffers are made
-// once and are as large as full detail needs; what changed is sent again, and
-// nothing else.
+// pmesh/three: a progressive mesh as an object of three.js, and scenes by its
+// GLTFLoader (gltf.js).
 //
 //   const object = new ProgressiveMesh(await open("bunny.pmesh"), material);
 //   scene.add(object);
 //   await object.stream({ faces: 50_000 });
-import {
-    BufferAttribute, BufferGeometry, Mesh, Sphere, Vector3,
-} from "three";
+import { BufferGeometry, Mesh } from "three";
+import { Buffers, sphereOf } from "./buffers.js";
 
-const NAMES = { normal: "normal", texcoord: "uv", color: "color" };
+export { sphereOf };
+export { ProgressivePlugin, load } from "./gltf.js";
 
 export class ProgressiveMesh extends Mesh {
-    #source;       // Mesh or RemoteMesh of pmesh
-    #ownNormals;   // the file has none: made of the visible faces
+    #source; // Mesh or RemoteMesh of pmesh
+    #options;
+    #buffers;
+    #moving = null; // between two levels
 
     // normals: false leaves a mesh without normals as it is (flat shading
-    // needs none).
-    constructor(source, material, { normals = true } = {}) {
+    // needs none). inflate: coarse levels swell to the volume of the full mesh.
+    // morph: morphTo() will be called. The source is to be opened with the same
+    // { inflate } or { morph }, and is not one of a worker then.
+    constructor(source, material,
+        { normals = true, inflate = false, morph = false } = {}) {
         super(new BufferGeometry(), material);
         this.isProgressiveMesh = true;
         this.#source = source;
-        this.#ownNormals = normals &&
-            !source.attributes.some((a) => a.kind === "normal");
+        this.#options = { normals, inflate, morph };
         this.#bind();
     }
 
@@ -33,77 +36,42 @@ export class ProgressiveMesh extends Mesh {
 
     #bind() {
         const g = this.geometry, source = this.#source;
-        this.#set("position", source.positions, 3);
-        for (const a of source.attributes)
-            if (a.kind in NAMES)
-                this.#set(NAMES[a.kind] + (a.kind !== "normal" && a.set ?
-                    a.set : ""), a.values, a.components);
-        if (this.#ownNormals)
-            this.#set("normal", new Float32Array(source.positions.length), 3);
-        g.setIndex(new BufferAttribute(source.indices, 1));
+        this.#buffers = new Buffers(source, {
+            ...this.#options,
+            sorted: source.sorted && source.header.materialCount > 1 &&
+                Array.isArray(this.material),
+        });
+        for (const [name, attribute] of Object.entries(this.#buffers.attributes))
+            g.setAttribute(name, attribute);
+        g.setIndex(this.#buffers.index);
         g.boundingSphere = sphereOf(source.header);
-        this.#refresh();
+        if (this.#options.inflate) // by less than a vertex's way to others
+            g.boundingSphere.radius *= 3;
+        this.#draw();
     }
 
-    #set(name, array, size) {
-        this.geometry.setAttribute(name, new BufferAttribute(array, size));
+    #draw() {
+        const g = this.geometry;
+        g.setDrawRange(0, 3 * this.#source.faceCount);
+        g.clearGroups();
+        if (Array.isArray(this.material))
+            for (const { material, first, count } of this.#buffers.groups)
+                if (count > 0)
+                    g.addGroup(3 * first, 3 * count, material);
     }
 
     // Sends the ranges of a change to the graphics card with the next frame.
     update(changes) {
-        const g = this.geometry, source = this.#source;
+        this.#arrive();
         if (changes.restarted) {
             this.geometry.dispose();
             this.geometry = new BufferGeometry();
             this.#bind();
-            return;
+        } else if (changes.faces.length + changes.vertices.length > 0 ||
+            this.geometry.drawRange.count !== 3 * this.#source.faceCount) {
+            this.#buffers.update(changes);
+            this.#draw();
         }
-        for (const name in g.attributes)
-            if (name !== "normal" || !this.#ownNormals)
-                mark(g.attributes[name], changes.vertices,
-                    g.attributes[name].itemSize);
-        if (!this.#isSorted)
-            mark(g.index, changes.faces, 3);
-        if (changes.faces.length + changes.vertices.length > 0 ||
-            g.drawRange.count !== 3 * source.faceCount)
-            this.#refresh();
-    }
-
-    get #isSorted() {
-        return this.#source.header.materialCount > 1 &&
-            Array.isArray(this.material);
-    }
-
-    // What depends on all visible faces.
-    #refresh() {
-        this.geometry.setDrawRange(0, 3 * this.#source.faceCount);
-        if (this.#isSorted)
-            this.#sort();
-        if (this.#ownNormals)
-            this.#makeNormals();
-    }
-
-    // Several materials: faces sorted by them, a group each.
-    #sort() {
-        const { indices, groups } = this.#source.decoder.sorted(), g = this.geometry;
-        if (g.index.array !== indices)
-            g.setIndex(new BufferAttribute(indices, 1));
-        mark(g.index, [{ first: 0, count: this.#source.faceCount }], 3);
-        g.clearGroups();
-        for (const { material, first, count } of groups)
-            if (count > 0)
-                g.addGroup(3 * first, 3 * count, material);
-    }
-
-    // Smooth normals, weighed by area.
-    #makeNormals() {
-        const { positions: p, indices, faceCount, vertexCount } = this.#source;
-        const attribute = this.geometry.attributes.normal, n = attribute.array;
-        n.fill(0, 0, 3 * vertexCount);
-        for (let i = 0; i < 3 * faceCount; i += 3)
-            addNormal(n, p, 3 * indices[i], 3 * indices[i + 1],
-                3 * indices[i + 2]);
-        mark(attribute, [{ first: 0, count: vertexCount }], 3);
     }
 
     // Moves to a target among what is decoded.
@@ -114,6 +82,61 @@ export class ProgressiveMesh extends Mesh {
         if (changes)
             this.update(changes);
         return changes;
+    }
+
+    // The same, not at once: while tick() is called, new vertices leave those
+    // they were split from for their own places, evenly within `milliseconds`,
+    // and the other way round if the target is coarser.
+    morphTo(target, milliseconds = 300) {
+        this.#arrive();
+        const source = this.#source, before = source.faceCount;
+        const coarse = { faces: before };
+        const changes = source.refine(target);
+        const finer = source.faceCount > before;
+        if (source.faceCount < before) {
+            source.refine(coarse); // and what changed is as it was
+            this.#move(source.morph(target), false, target, milliseconds);
+        } else if (changes) {
+            this.update(changes);
+            if (finer)
+                this.#move(source.morph(coarse), true, target, milliseconds);
+        }
+    }
+
+    #move(from, finer, target, milliseconds) {
+        const to = this.#source.positions, n = from.length;
+        let first = 0;
+        while (first < n && from[first] === to[first])
+            first++;
+        this.#moving = {
+            from, first: Math.floor(first / 3), finer, target, milliseconds,
+            passed: 0,
+        };
+        this.tick(0);
+    }
+
+    // Goes on with morphTo(); false once it has arrived.
+    tick(milliseconds) {
+        const m = this.#moving;
+        if (!m)
+            return false;
+        m.passed += milliseconds;
+        const part = Math.min(m.passed / m.milliseconds, 1);
+        if (part === 1)
+            this.#arrive();
+        else
+            this.#buffers.blend(m.from, m.first, m.finer ? part : 1 - part);
+        return part < 1;
+    }
+
+    #arrive() {
+        const m = this.#moving;
+        this.#moving = null;
+        if (!m)
+            return;
+        this.#buffers.blend(m.from, m.first, 1);
+        if (!m.finer)
+            this.refine(m.target);
     }
 
     // Reads until the target can be shown, sharpening on the way; `seen` is
@@ -137,37 +160,4 @@ export class ProgressiveMesh extends Mesh {
         this.geometry.dispose();
         this.#source.dispose();
     }
-}
-
-// three forgets ranges when it has sent them; an object that is not drawn must
-// not collect them without end.
-const MOST_RANGES = 256;
-
-function mark(attribute, ranges, size) {
-    if (ranges.length === 0)
-        return;
-    if (attribute.updateRanges.length + ranges.length > MOST_RANGES) {
-        attribute.clearUpdateRanges();
-        ranges = [{ first: 0, count: attribute.array.length / size }];
-    }
-    for (const { first, count } of ranges)
-        attribute.addUpdateRange(size * first, size * count);
-    attribute.needsUpdate = true;
-}
-
-function addNormal(n, p, a, b, c) {
-    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
-    const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
-    const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
-    for (const v of [a, b, c]) {
-        n[v] += x;
-        n[v + 1] += y;
-        n[v + 2] += z;
-    }
-}
-
-// Around the grid: every level lies in it.
-function sphereOf({ origin, step, bounds }) {
-    const size = new Vector3(...bounds).multiplyScalar(step / 2);
-    return new Sphere(new Vector3(...origin).add(size), size.length());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // pmesh/worker: the same mesh, decoded in a worker. Its buffers are this
 // side's own, brought up to date by the ranges that the worker sends.
-import { PmeshError } from "./decoder.js";
+import { PmeshError } from "./module.js";
 
 // As open(); `worker`: a Worker or MessagePort that runs serve(), if the
 // bundler needs it made elsewhere. Resolves when the base mesh is there.

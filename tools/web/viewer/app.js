@@ -3,6 +3,7 @@
 import { Decoder, open } from "pmesh";
 import { Chart, size } from "./chart.js";
 import { frame, throttle } from "./link.js";
+import { openScene } from "./scene.js";
 import { Stage } from "./stage.js";
 
 const $ = (id) => document.getElementById(id);
@@ -16,6 +17,8 @@ let run = 0;          // loads begun: an older one ends when it sees a newer
 let held = null;      // the file's bytes, as far as they are known
 let finished = false; // the load
 let first = null;     // what had arrived when something could be shown
+
+const WAYS = { morph: true, inflate: true }; // in which levels may be shown
 
 // ---- where the file comes from --------------------------------------------
 
@@ -37,11 +40,21 @@ async function slowFetch(...all) {
     }) : response;
 }
 
-async function connect() {
-    if (data.dataset.url)
-        return open(data.dataset.url, { fetch: slowFetch });
-    held ??= embedded();
-    return open(link(new Response(held)));
+// Files say with their ninth byte what they hold.
+const SCENE = 8;
+
+async function connect(mine) {
+    const { url } = data.dataset;
+    if (!url)
+        held ??= embedded();
+    const start = held ?? new Uint8Array(await (await fetch(url, {
+        headers: { Range: "bytes=0-15" },
+    })).arrayBuffer());
+    const options = url ? { fetch: slowFetch } : {};
+    const input = () => url ?? link(new Response(held));
+    return start[8] === SCENE ?
+        openScene(input(), held?.length, options, (view) => seen(view, mine)) :
+        open(input(), { ...options, ...WAYS });
 }
 
 // ---- loading ----------------------------------------------------------------
@@ -53,14 +66,14 @@ async function load() {
     $("message").hidden = true;
     $("progress").value = 0;
     try {
-        const opened = await connect();
+        const opened = await connect(mine);
         if (mine !== run)
             return opened.stop();
         mesh = opened;
         mesh.refine();
         first = mesh.progress;
         start(again);
-        await sharpen(mine);
+        await (mesh.isScene ? fill(mine) : sharpen(mine));
     } catch (error) {
         if (mine === run)
             complain(error);
@@ -70,6 +83,7 @@ async function load() {
 function start(again) {
     stage.show(mesh, again);
     const { header } = mesh;
+    document.body.classList.toggle("scene", mesh.isScene === true);
     $("about").textContent = `${count(header.faces)} faces, ` +
         `${size(header.bytes)}, ${header.levels.length} levels`;
     $("face-count").min = header.baseFaces;
@@ -86,7 +100,7 @@ async function sharpen(mine) {
         stage.object.update(changes);
         if (changes.restarted)
             start(true);
-        choose(target);
+        choose(target, null, false);
         arrived(began);
         await frame();
     }
@@ -96,6 +110,29 @@ async function sharpen(mine) {
         complain(new Error("The file ends early: this is all it holds."));
     if ($("compare").checked)
         await compare();
+}
+
+// A scene streams by itself.
+let began = 0;
+
+async function seen(view, mine) {
+    if (mine !== run)
+        return view.stop();
+    if (view === mesh) {
+        choose(target, null, false);
+        arrived(began);
+    }
+    return frame();
+}
+
+async function fill(mine) {
+    began = performance.now();
+    await mesh.done;
+    if (mine === run) {
+        finished = mesh.progress.complete;
+        choose(target, null, false);
+        arrived(began);
+    }
 }
 
 function arrived(began) {
@@ -112,20 +149,25 @@ function complain(error) {
 
 // ---- level of detail --------------------------------------------------------
 
-// `from`: the control that is being used keeps what it says.
-function choose(wanted, from) {
+// `from`: the control that is being used keeps what it says. While a file
+// arrives, levels do not take their time.
+function choose(wanted, from, slowly = true) {
     target = wanted;
-    const changes = mesh?.refine(wanted);
-    if (!changes)
+    if (!mesh || stage.object === null)
         return;
-    stage.object.update(changes);
-    stage.draw();
+    if (slowly && $("morph").checked) {
+        stage.go(wanted);
+        stage.moved = () => update(from);
+    } else {
+        stage.object.refine(wanted);
+        stage.draw();
+    }
     update(from);
 }
 
 function levelOf(faces) {
     const { levels } = mesh.header;
-    return levels.findLastIndex((level) => level.faces <= faces);
+    return Math.max(0, levels.findLastIndex((level) => level.faces <= faces));
 }
 
 // Bytes of the file up to the visible faces: exact at levels, a share between.
@@ -220,6 +262,14 @@ $("tint").addEventListener("change", ({ target: { checked } }) => {
 $("flat").addEventListener("change", ({ target: { checked } }) => {
     stage.flat = checked;
 });
+// One or the other: a swollen mesh has no coarser one that it grows out of.
+for (const [id, way, other] of [["swell", { inflate: true }, "morph"],
+    ["morph", { morph: true }, "swell"]])
+    $(id).addEventListener("change", ({ target: { checked } }) => {
+        if (checked)
+            $(other).checked = false;
+        stage.way = checked ? way : {};
+    });
 $("compare").addEventListener("change", compare);
 $("divider").addEventListener("input", ({ target: { value } }) => {
     $("line").style.left = `${value}%`;
@@ -249,7 +299,9 @@ $("replay").addEventListener("click", () => {
 
 // ---- keys -------------------------------------------------------------------
 
-const TOGGLES = { w: "wire", l: "tint", f: "flat", s: "compare" };
+const TOGGLES = {
+    w: "wire", l: "tint", f: "flat", s: "compare", v: "swell", m: "morph",
+};
 
 addEventListener("keydown", (event) => {
     const { key, target: where } = event;

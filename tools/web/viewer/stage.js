@@ -6,7 +6,7 @@ import {
     WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { ProgressiveMesh } from "pmesh/three";
+import { ProgressiveMesh, sphereOf } from "pmesh/three";
 
 const GREY = 0xb9b4aa;
 const INK = 0x2a2d31;
@@ -23,9 +23,13 @@ export class Stage {
     #material;
     #lines;
     #dirty = true;
+    #way = {}; // how levels are shown: { inflate } or { morph }
+    #moving = false; // between two levels
+    #last = 0;       // time of the last frame then
     #divider = 0.5;
     #paper = new Color();
     frames = 0;
+    moved = () => {}; // called when go() has arrived
 
     constructor(canvas) {
         this.#renderer = new WebGLRenderer({ canvas, antialias: true });
@@ -72,8 +76,9 @@ export class Stage {
     // Takes a mesh of pmesh; the camera stays if it is the same one again.
     show(source, keepCamera) {
         this.#object?.removeFromParent();
-        this.#object?.geometry.dispose();
-        this.#object = new ProgressiveMesh(source, this.#material);
+        this.#object?.geometry?.dispose();
+        this.#object = source.isScene ? source.object :
+            new ProgressiveMesh(source, this.#material, this.#way);
         this.#scene.add(this.#object);
         this.#paint();
         this.wireframe = this.#wire !== null;
@@ -84,7 +89,8 @@ export class Stage {
     }
 
     #frame() {
-        const { center, radius } = this.#object.geometry.boundingSphere;
+        const { sphere, source } = this.#object;
+        const { center, radius } = sphere ?? sphereOf(source.header);
         this.#camera.near = NEAR * radius;
         this.#camera.far = FAR * radius;
         this.#camera.position.copy(center)
@@ -97,9 +103,30 @@ export class Stage {
         this.#controls.update();
     }
 
+    // { inflate: true }, { morph: true } or {}.
+    set way(way) {
+        this.#way = way;
+        this.#moving = false;
+        if (this.#object)
+            this.show(this.#object.source, true);
+    }
+
+    // Goes to a level by and by; calls moved() once it is there.
+    go(target) {
+        this.#last = performance.now();
+        this.#moving = true;
+        this.#object.morphTo(target);
+        this.draw();
+    }
+
     // The same geometry once more: three makes its lines from the indices.
     set wireframe(on) {
         this.#wire?.removeFromParent();
+        if (this.#object?.source.isScene) {
+            this.#object.wireframe = on;
+            this.draw();
+            return;
+        }
         this.#wire = on && this.#object ?
             new Mesh(this.#object.geometry, this.#lines) : null;
         if (this.#wire)
@@ -178,7 +205,20 @@ export class Stage {
         });
     }
 
+    #move() {
+        if (!this.#moving)
+            return;
+        const now = performance.now();
+        this.#moving = this.#object.tick(now - this.#last);
+        this.#last = now;
+        if (this.#moving)
+            this.draw();
+        else
+            this.moved();
+    }
+
     #render() {
+        this.#move();
         const r = this.#renderer, canvas = r.domElement;
         const w = canvas.clientWidth, h = canvas.clientHeight;
         const cut = this.#original ? Math.round(w * this.#divider) : w;
