@@ -191,6 +191,7 @@ golden: $(golden)
 ## bench: all of the following, against other programs (tests/bench)
 bench: bench-all
 ## bench-size: bytes of complete files, by part; draws size.svg
+## bench-attribute-size: the same of meshes with attributes
 ## bench-rate: bytes against distance of every prefix; draws rate.svg
 ## bench-lod: distance at equal faces, against strict quadric order
 ## bench-quality: distance at equal faces, against CGAL and meshoptimizer

@@ -19,6 +19,7 @@
 #define MAX_WEIGHT 1e6
 
 enum {
+    SPENT_BYTE = 8 * 256, /* of pmesh_codec.attribute_spent */
     BLOCK_ROOM = 1 << 22,  /* far beyond what a block of 64 KiB can need */
     BASE_FACE_ROOM = 96,   /* bytes: a face is a few flags and, at most, one */
     BASE_WEDGE_ROOM = 160, /* vertex of 3 x 24 bits; 32 values of 16 bits */
@@ -301,6 +302,7 @@ static void fill_header(job *j)
     h->base_coder = j->replay.base_coder;
     h->grid = m->grid;
     memcpy(h->bounds, m->bounds, sizeof h->bounds);
+    h->sizes.attribute_count = m->attribute_count;
     h->sizes.value_count = m->value_count;
     h->sizes.material_count = m->material_count;
     h->sizes.moves = j->replay.moves;
@@ -346,6 +348,12 @@ static void fill_report(job *j, uint64_t header_size, uint64_t file_size)
     r->bytes_positions = c->part_size[1];
     r->bytes_attributes = c->part_size[2];
     r->bytes_lossless = h->exact_size;
+    r->attribute_count = h->attribute_count;
+    for (uint32_t i = 0; i < h->attribute_count; i++)
+        r->attributes[i] = (pmesh_attribute_size){
+            .kind = h->attributes[i].kind, .set = h->attributes[i].set,
+            .bytes = (c->attribute_spent[i] + SPENT_BYTE / 2) / SPENT_BYTE
+        };
     r->bytes_header = file_size - r->bytes_base - r->bytes_connectivity -
                       r->bytes_positions - r->bytes_attributes -
                       r->bytes_lossless;

@@ -179,7 +179,7 @@ static void count_base(enc_replay *r)
         r->base_vertices += s->vertex_end[v] == ENC_NONE;
 }
 
-/* Wedges made twice (see wedge.c) are rare; room for a few. */
+/* Wedges made twice (see find_place() in wedge.c) are rare; room for a few. */
 static uint32_t wedge_room(const enc_mesh *mesh)
 {
     return mesh->value_count ? mesh->wedge_count + mesh->wedge_count / 4 + 1024
@@ -222,6 +222,7 @@ static bool allocate_codec(enc_replay *r)
         .faces = m->face_count,
         .wedges = wedge_room(m),
         .base_faces = r->base_faces,
+        .attribute_count = m->attribute_count,
         .value_count = m->value_count,
         .material_count = m->material_count,
         .moves = r->moves,

@@ -164,6 +164,13 @@ typedef struct pmesh_encoder_config {
  */
 PMESH_API pmesh_encoder_config pmesh_encoder_config_default(void);
 
+/* What the values of an attribute take, wedges not counted. */
+typedef struct pmesh_attribute_size {
+    pmesh_attribute_kind kind;
+    uint8_t set;
+    uint64_t bytes; /* rounded; of the base mesh, too */
+} pmesh_attribute_size;
+
 /* What the encoder did. Counts are of the input unless they say otherwise. */
 typedef struct pmesh_encode_report {
     pmesh_grid grid;
@@ -196,6 +203,8 @@ typedef struct pmesh_encode_report {
     double seconds_import, seconds_contract, seconds_code; /* 0: no clock */
     double (*clock)(void);        /* in: seconds, or NULL */
     uint64_t error_index;         /* with E_INDEX, E_NOT_FINITE: which face */
+    uint32_t attribute_count;
+    pmesh_attribute_size attributes[PMESH_MAX_ATTRIBUTES];
 } pmesh_encode_report;
 
 /* Takes the next `size` bytes of the file; non-zero reports a failure. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "format/codec.h"
+#include "format/value.h"
 #include "format/wedge.h"
 
 /* Rows of models.base. */

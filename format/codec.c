@@ -51,6 +51,15 @@ static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)
         m->material = carve(k, s->faces, sizeof *m->material);
 }
 
+static void start_models(pmesh_codec *c)
+{
+    pmesh_models_init(&c->models, &pmesh_start);
+    for (uint32_t i = 0; i < c->sizes.attribute_count; i++)
+        pmesh_channel_models_init(&c->channel_models[i], &pmesh_start);
+    for (uint32_t i = 0; i < c->sizes.value_count; i++)
+        pmesh_value_models_init(&c->value_models[i], &pmesh_start);
+}
+
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
                           void *block)
 {
@@ -63,11 +72,17 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     c->face_end = carve(&k, s->vertices, sizeof *c->face_end);
     c->wedge_end = NULL;
     c->wedge_corner = c->wedge_order = NULL;
+    c->wedge_before = c->wedge_last = NULL;
     if (s->value_count) {
         c->wedge_end = carve(&k, s->vertices, sizeof *c->wedge_end);
         c->wedge_corner = carve(&k, s->wedges, sizeof *c->wedge_corner);
+        c->wedge_before = carve(&k, s->wedges, sizeof *c->wedge_before);
+        c->wedge_last = carve(&k, rows_of(s), sizeof *c->wedge_last);
         c->wedge_order = carve(&k, s->block_wedges, sizeof *c->wedge_order);
     }
+    c->channel_models =
+        carve(&k, s->attribute_count, sizeof *c->channel_models);
+    c->value_models = carve(&k, s->value_count, sizeof *c->value_models);
     c->unsplit = NULL;
     if (s->moves)
         c->unsplit = carve(&k, s->block_splits, sizeof *c->unsplit);
@@ -80,18 +95,35 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     c->base_scratch = carve(&k, pmesh_base_scratch(s->base_faces),
                             sizeof *c->base_scratch);
     if (block)
-        pmesh_models_init(&c->models, &pmesh_start);
+        start_models(c);
     return k.used;
+}
+
+static bool may_be_tangent(const pmesh_attribute *a)
+{
+    return a->kind == PMESH_GENERIC && a->components == 4 &&
+           a->minimum[0] < 0 && a->minimum[1] < 0 && a->minimum[2] < 0;
 }
 
 void pmesh_codec_limit_values(pmesh_codec *c, const pmesh_attribute *attributes,
                               uint32_t count)
 {
-    uint32_t component = 0;
+    uint32_t component = 0, map = PMESH_NONE, normal = PMESH_NONE;
     for (uint32_t i = 0; i < count; i++) {
-        const uint32_t n = pmesh_coded_components(&attributes[i]);
+        const pmesh_attribute *a = &attributes[i];
+        const uint32_t n = pmesh_coded_components(a);
+        if (a->kind == PMESH_TEXCOORD && map == PMESH_NONE)
+            map = i;
+        if (a->kind == PMESH_NORMAL && normal == PMESH_NONE)
+            normal = i;
+        c->channel[i] = (pmesh_channel){
+            .first = component, .count = n, .normal = a->kind == PMESH_NORMAL,
+            .tangent = may_be_tangent(a) && map != PMESH_NONE &&
+                       normal != PMESH_NONE
+        };
         for (uint32_t k = 0; k < n; k++)
-            c->component_max[component++] =
-                ((uint32_t)1 << attributes[i].bits) - 1;
+            c->component_max[component++] = ((uint32_t)1 << a->bits) - 1;
     }
+    c->tangent_map = map;
+    c->tangent_normal = normal;
 }

@@ -81,6 +81,7 @@ typedef struct pmesh_block {
 typedef struct pmesh_codec_sizes {
     uint32_t vertices, faces, wedges; /* at full detail */
     uint32_t base_faces;
+    uint32_t attribute_count;
     uint32_t value_count; /* coded components of a wedge; 0: no attributes */
     uint32_t material_count;
     bool moves;            /* optimal placement: a split moves its parent */
@@ -96,6 +97,13 @@ static inline uint64_t pmesh_block_faces(const pmesh_codec_sizes *s)
 {
     return s->joined ? s->block_faces : 2 * (uint64_t)s->block_splits;
 }
+
+/* An attribute's components among all of a wedge. */
+typedef struct pmesh_channel {
+    uint32_t first, count;
+    bool normal;
+    bool tangent; /* see pmesh_codec_limit_values() */
+} pmesh_channel;
 
 /* The neighbours of a vertex: their number, and the sum of their positions,
  * modulo 2^32. One record, for they are wanted together. */
@@ -125,9 +133,15 @@ typedef struct pmesh_codec {
     pmesh_models models;
     int32_t bounds[3]; /* largest coordinate of each axis */
     uint32_t component_max[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS];
+    pmesh_channel channel[PMESH_MAX_ATTRIBUTES];
+    uint32_t tangent_map, tangent_normal; /* channels that tangents go by */
+    pmesh_channel_models *channel_models; /* per attribute */
+    pmesh_value_models *value_models;     /* per component */
     const char *rule;      /* what a negative status was about */
     uint64_t part_size[3]; /* when encoding, bytes so far: connectivity,
                               positions, attributes */
+    uint64_t attribute_spent[PMESH_MAX_ATTRIBUTES]; /* likewise 1/256 bits, of
+                                                       values, of the base too */
 
     /* Of the level. */
     uint32_t *order; /* per vertex: the visit's order */
@@ -154,6 +168,9 @@ typedef struct pmesh_codec {
     uint32_t *face_order;   /* per face of the block, likewise */
     uint32_t *wedge_order;  /* per wedge of the block, likewise */
     uint32_t *wedge_corner; /* per wedge: the half-edge it was made for */
+    uint32_t *wedge_before; /* per wedge: the next lower one of its vertex, or
+                               PMESH_NONE */
+    uint32_t *wedge_last;   /* per vertex: its highest wedge, or PMESH_NONE */
     uint32_t *scratch;      /* see rank.c, level.c */
     void *cut_room;         /* see cut.c */
     uint32_t *base_scratch; /* pmesh_base_scratch() numbers, for the base */
@@ -168,7 +185,9 @@ typedef struct pmesh_codec {
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *sizes,
                           void *block);
 
-/* Sets component_max from the attributes' bits. */
+/* Sets component_max and channel from the attributes. A generic one of four
+ * components, the first three of which take negative values too, is taken for a
+ * tangent if a normal and texture coordinates come before it. */
 void pmesh_codec_limit_values(pmesh_codec *c, const pmesh_attribute *attributes,
                               uint32_t count);
 

@@ -97,6 +97,21 @@ bool pmesh_coder_finish(pmesh_coder *c)
     return !c->out->overflow;
 }
 
+/* The bytes that left the range, and by how much it is narrower than at the
+ * start: log2(range) by squaring. */
+uint64_t pmesh_coder_spent(const pmesh_coder *c)
+{
+    uint64_t part = c->range, log = 31;
+    for (; part < (UINT64_C(1) << 31); part <<= 1)
+        log--;
+    for (int i = 0; i < 8; i++) {
+        part = part * part >> 31;
+        log = 2 * log + (part >> 32);
+        part >>= part >> 32;
+    }
+    return (c->out->size + c->pending + c->started) * 8 * 256 + 32 * 256 - log;
+}
+
 static void adapt(pmesh_bit *m, unsigned bit)
 {
     const int32_t target = bit ? 0 : 65535;

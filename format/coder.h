@@ -65,6 +65,9 @@ static inline void pmesh_coder_normalize(pmesh_coder *c)
     }
 }
 
+/* Encoding: what has been written so far, in 1/256 bit. */
+uint64_t pmesh_coder_spent(const pmesh_coder *c);
+
 /* One adaptive bit. */
 unsigned pmesh_code_bit(pmesh_coder *c, pmesh_bit *m, unsigned bit);
 

@@ -128,6 +128,7 @@ static const char *read_attributes(pmesh_cursor *in, pmesh_header_chunk *h)
     h->attribute_count = pmesh_get_u8(in);
     if (h->attribute_count > PMESH_MAX_ATTRIBUTES)
         return "SPEC 5.3: more than 8 attributes";
+    h->sizes.attribute_count = h->attribute_count;
     h->sizes.value_count = 0;
     for (uint32_t i = 0; i < h->attribute_count; i++) {
         const char *rule = read_attribute(in, &h->attributes[i]);

@@ -11,6 +11,7 @@
 #include "format/predict.h"
 #include "format/rank.h"
 #include "format/residual.h"
+#include "format/value.h"
 #include "format/wedge.h"
 
 static pmesh_status corrupt(pmesh_codec *c, const char *rule)

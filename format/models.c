@@ -4,6 +4,10 @@
 /* What was never seen while the tables were made. */
 enum { ALONG_START = 900, ACROSS_START = 400 };
 
+/* An attribute's expected error, in 1/16, and the weights of its terms, in
+ * 1/256: the affine map's. */
+enum { ERROR_START = 64, AFFINE_START = 128 };
+
 #define COUNT(array, item) (sizeof(array) / sizeof(item))
 #define INIT_BITS(array)                                                       \
     pmesh_bits_init((pmesh_bit *)(array), COUNT(array, pmesh_bit))
@@ -97,19 +101,42 @@ void pmesh_models_init(pmesh_models *m, const pmesh_tables *start)
     cut_init(&m->cut_weights, start);
     predict_init(m, start);
     INIT_BITS(m->base);
-    INIT_BITS(m->value_sign);
     pmesh_bits_init(&m->base_sign, 1);
     pmesh_number_init(&m->base_vertex);
     pmesh_number_init(&m->base_position);
     wedge_init(&m->wedge);
     join_init(&m->join);
-    for (int i = 0; i < PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS; i++)
-        for (int k = 0; k < 2; k++)
-            pmesh_number_init(&m->value[i][k]);
     residual_init(&m->residual[0], start);
     residual_init(&m->residual[1], start);
     means_init((pmesh_mean *)m->along, start->along,
                COUNT(m->along, pmesh_mean), ALONG_START);
     means_init((pmesh_mean *)m->across, start->across,
                COUNT(m->across, pmesh_mean), ACROSS_START);
+}
+
+void pmesh_channel_models_init(pmesh_channel_models *m,
+                               const pmesh_tables *start)
+{
+    for (int scale = 0; scale < PMESH_VALUE_SCALES; scale++)
+        residual_bits_init(&m->any[scale],
+                           start->residual + scale * PMESH_RESIDUAL_BITS);
+    pmesh_bits_start((pmesh_bit *)m->low, COUNT(m->low, pmesh_bit), start->low);
+    pmesh_number_init(&m->escape);
+    INIT_BITS(m->differs);
+}
+
+void pmesh_value_models_init(pmesh_value_models *m, const pmesh_tables *start)
+{
+    static const int16_t weight[PMESH_FIT_TERMS] = { AFFINE_START };
+    pmesh_mean *mean = (pmesh_mean *)m->by_spread;
+    for (int scale = 0; scale < PMESH_VALUE_SCALES; scale++)
+        residual_bits_init(&m->here[scale],
+                           start->residual + scale * PMESH_RESIDUAL_BITS);
+    for (size_t i = 0; i < COUNT(m->by_spread, pmesh_mean); i++)
+        mean[i] = (pmesh_mean){ ERROR_START, 0 };
+    mean = (pmesh_mean *)m->by_far;
+    for (size_t i = 0; i < COUNT(m->by_far, pmesh_mean); i++)
+        mean[i] = (pmesh_mean){ ERROR_START, 0 };
+    for (int i = 0; i < PMESH_VALUE_FITS; i++)
+        pmesh_fit_init(&m->fit[i], weight, 1);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * models.h - every adaptive model of a stream. They start from tables and live
- * from the base mesh to the last block.
+ * from the base mesh to the last block. Those of attributes are apart, as many
+ * as a stream has attributes.
  */
 #ifndef PMESH_MODELS_H
 #define PMESH_MODELS_H
@@ -36,12 +37,38 @@ typedef struct pmesh_mean {
     uint32_t uses;
 } pmesh_mean;
 
+/* Attributes (SPEC 6.6). */
+enum {
+    PMESH_VALUE_SCALES = 40,
+    PMESH_VALUE_CLASSES = 5,  /* known neighbours: 0, 1, 2, 3 or 4, more */
+    PMESH_VALUE_SPREADS = 32, /* half octaves of how much they differ */
+    PMESH_VALUE_FITS = 3,     /* 0 .. 2, 3 or 4, more neighbours */
+    PMESH_SIBLINGS = 3        /* that a wedge is compared with */
+};
+
+/* Of an attribute: what its components share. */
+typedef struct pmesh_channel_models {
+    pmesh_residual_bits any[PMESH_VALUE_SCALES];
+    pmesh_bit low[PMESH_VALUE_SCALES][3];
+    pmesh_number escape;
+    pmesh_bit differs[3][PMESH_SIBLINGS];
+} pmesh_channel_models;
+
+/* Of a component. */
+typedef struct pmesh_value_models {
+    pmesh_residual_bits here[PMESH_VALUE_SCALES];
+    pmesh_mean by_spread[PMESH_VALUE_CLASSES][PMESH_VALUE_SPREADS];
+    pmesh_mean by_far[PMESH_VALUE_CLASSES][PMESH_FAR + 1];
+    pmesh_fit fit[PMESH_VALUE_FITS];
+} pmesh_value_models;
+
 typedef struct pmesh_wedge_models {
     pmesh_bit ordinary[3];
-    pmesh_bit seam[4];
-    pmesh_bit corner[4];
-    pmesh_bit choice[8];
-    pmesh_bit material[4];
+    /* By what is known at the other ends of the edges beside a corner. */
+    pmesh_bit seam[3][3];
+    pmesh_bit corner[4][9];
+    pmesh_bit choice[2];
+    pmesh_bit material[3];
     pmesh_number pick;
 } pmesh_wedge_models;
 
@@ -83,10 +110,11 @@ typedef struct pmesh_models {
     pmesh_bit base_sign;
     pmesh_wedge_models wedge;
     pmesh_join_models join;
-    pmesh_number value[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS][2];
-    pmesh_bit value_sign[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS][2];
 } pmesh_models;
 
 void pmesh_models_init(pmesh_models *m, const pmesh_tables *start);
+void pmesh_channel_models_init(pmesh_channel_models *m,
+                               const pmesh_tables *start);
+void pmesh_value_models_init(pmesh_value_models *m, const pmesh_tables *start);
 
 #endif

@@ -231,12 +231,34 @@ static void permute_values(pmesh_codec *c, uint32_t *scratch)
                n * sizeof *value);
 }
 
+/* Takes the block's wedges out of their vertices' lists. */
+static void unlist_wedges(pmesh_codec *c)
+{
+    const pmesh_mesh *m = &c->mesh;
+    const pmesh_block *b = &c->block;
+    for (uint32_t w = b->wedge; w < m->wedge_count; w++) {
+        uint32_t *last = &c->wedge_last[m->wedge_vertex[w]];
+        while (*last != PMESH_NONE && *last >= b->wedge)
+            *last = c->wedge_before[*last];
+    }
+}
+
+static void list_wedges(pmesh_codec *c)
+{
+    const pmesh_mesh *m = &c->mesh;
+    for (uint32_t w = c->block.wedge; w < m->wedge_count; w++) {
+        c->wedge_before[w] = c->wedge_last[m->wedge_vertex[w]];
+        c->wedge_last[m->wedge_vertex[w]] = w;
+    }
+}
+
 static void rename_wedges(pmesh_codec *c)
 {
     pmesh_mesh *m = &c->mesh;
     const pmesh_block *b = &c->block;
     uint32_t *number = c->scratch, *scratch = c->scratch + b->wedge_count;
 
+    unlist_wedges(c);
     number_wedges(c, number);
     for (uint32_t i = 0; i < b->wedge_count; i++)
         c->wedge_order[number[i] - b->wedge] = i;
@@ -278,5 +300,6 @@ void pmesh_block_rank(pmesh_codec *c)
                  h = pmesh_corner_next(&c->mesh, &start, h))
                 c->mesh.wedge_vertex[c->mesh.wedge[h]] = u;
         }
+        list_wedges(c);
     }
 }

@@ -29,27 +29,26 @@ typedef struct coordinate {
 } coordinate;
 
 /* Of Golomb's bins, half a deviation wide; the rest of the bits below. */
-static uint64_t code_size(pmesh_coder *coder, pmesh_residual_model *m,
-                          const coordinate *at, uint64_t size)
+static uint64_t code_size(pmesh_coder *coder, const pmesh_expectation *at,
+                          uint64_t size)
 {
-    pmesh_bit *any = m->any[at->scale].unary;
-    pmesh_bit *here = m->here[at->scale][at->place][at->far].unary;
     /* The deviation is 2^(scale/2 - 4) steps. */
     const unsigned shift = at->scale > 11 ? at->scale / 2 - 5 : 0;
     const uint64_t bin = size >> shift;
     uint32_t q = 0, node = 0;
     while (q < PMESH_UNARY &&
-           pmesh_code_bit_twice(coder, &any[q], &here[q], bin > q))
+           pmesh_code_bit_twice(coder, &at->any->unary[q], &at->here->unary[q],
+                                bin > q))
         q++;
     if (q == PMESH_UNARY)
-        q +=
-            pmesh_code_number(coder, &m->escape, (uint32_t)(bin - PMESH_UNARY));
+        q += pmesh_code_number(coder, at->escape,
+                               (uint32_t)(bin - PMESH_UNARY));
     uint64_t result = q;
     for (unsigned i = shift; i-- > 0;) {
         const unsigned bit = size >> i & 1;
         unsigned got;
         if (node < LOW_MODELS && shift - i <= 2) {
-            got = pmesh_code_bit(coder, &m->low[at->scale][node], bit);
+            got = pmesh_code_bit(coder, &at->low[node], bit);
             node = 1 + got;
         } else {
             got = pmesh_code_raw(coder, 1, bit);
@@ -59,33 +58,47 @@ static uint64_t code_size(pmesh_coder *coder, pmesh_residual_model *m,
     return result;
 }
 
-/* Codes the difference from the rounded mean. */
-static int64_t code_coordinate(pmesh_coder *coder, pmesh_residual_model *m,
-                               const coordinate *at, int64_t value)
+int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_expectation *at,
+                        int64_t value)
 {
-    pmesh_residual_bits *any = &m->any[at->scale];
-    pmesh_residual_bits *here = &m->here[at->scale][at->place][at->far];
     const int64_t center = (at->mean + FRACTION / 2) >> FRACTION_BITS;
     const int64_t part = at->mean - center * FRACTION; /* -8 .. 7 */
     const unsigned lean = part < -2 ? 0 : part > 2 ? 2 : 1;
     const int64_t r = value - center;
 
-    if (!pmesh_code_bit_twice(coder, &any->zero[lean], &here->zero[lean],
-                              r != 0))
+    if (!pmesh_code_bit_twice(coder, &at->any->zero[lean],
+                              &at->here->zero[lean], r != 0))
         return center;
-    const unsigned negative =
-        pmesh_code_bit_twice(coder, &any->sign[lean], &here->sign[lean], r < 0);
+    const unsigned negative = pmesh_code_bit_twice(
+        coder, &at->any->sign[lean], &at->here->sign[lean], r < 0);
     const int64_t size =
-        1 + (int64_t)code_size(coder, m, at, (uint64_t)(r < 0 ? -r : r) - 1);
+        1 + (int64_t)code_size(coder, at, (uint64_t)(r < 0 ? -r : r) - 1);
     return negative ? center - size : center + size;
 }
 
-/* Octaves from half the deviation on. */
-static unsigned how_far(int64_t off, unsigned scale)
+/* Codes the difference from the rounded mean. */
+static int64_t code_coordinate(pmesh_coder *coder, pmesh_residual_model *m,
+                               const coordinate *at, int64_t value)
+{
+    const pmesh_expectation near = { &m->any[at->scale],
+                              &m->here[at->scale][at->place][at->far],
+                              m->low[at->scale], &m->escape, at->scale,
+                              at->mean };
+    return pmesh_code_near(coder, &near, value);
+}
+
+unsigned pmesh_how_far(int64_t off, unsigned scale)
 {
     const uint64_t size = (uint64_t)(off < 0 ? -off : off);
     const int over = size ? (int)half_octave(size) - (int)scale + 4 : 0;
     return over < 2 ? 0 : over < 4 ? 1 : over < 6 ? 2 : PMESH_FAR - 1;
+}
+
+unsigned pmesh_deviation_scale(uint64_t deviation, unsigned count)
+{
+    const uint64_t square = deviation * deviation;
+    const unsigned scale = square ? pmesh_bit_length(square) - 1 : 0;
+    return scale < count ? scale : count - 1;
 }
 
 static uint32_t expected(const pmesh_mean *m, uint32_t size)
@@ -222,7 +235,7 @@ bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
             return false;
         position[a] = (int32_t)value;
         d[k] = value * FRACTION - p->position[a];
-        at.far = how_far(value * FRACTION - at.mean, at.scale);
+        at.far = pmesh_how_far(value * FRACTION - at.mean, at.scale);
     }
     learn_errors(&g, d, along, across, p->size);
     pmesh_predict_learn(p, position, wide, high);

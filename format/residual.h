@@ -13,6 +13,27 @@
 
 #include "format/predict.h"
 
+/* Where a number is expected: around `mean`, in 1/16, with the deviation
+ * 2^(scale / 2) / 16; and the models that know what happens there. */
+typedef struct pmesh_expectation {
+    pmesh_residual_bits *any, *here;
+    pmesh_bit *low;
+    pmesh_number *escape;
+    unsigned scale;
+    int64_t mean;
+} pmesh_expectation;
+
+/* Codes a whole number below 2^32 in size. */
+int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_expectation *at,
+                        int64_t value);
+
+/* The scale of a deviation below 2^32, in 1/16; of `count` scales. */
+unsigned pmesh_deviation_scale(uint64_t deviation, unsigned count);
+
+/* How far off, in 1/16, a number was: octaves from half the deviation on, below
+ * PMESH_FAR. */
+unsigned pmesh_how_far(int64_t off, unsigned scale);
+
 /* Codes `position` (in and out) and learns from the outcome; `which` is 0 for
  * a child and 1 for a moved parent. Decoding: false if it leaves the bounds. */
 bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,

@@ -35,21 +35,24 @@ static pmesh_status make_wedge(pmesh_codec *c, const pmesh_oracle *oracle,
     m->wedge_vertex[w] = m->vertex[a.half_edge];
     m->wedge_parent[w] = parent;
     c->wedge_corner[w] = a.half_edge;
+    c->wedge_before[w] = c->wedge_last[m->wedge_vertex[w]];
+    c->wedge_last[m->wedge_vertex[w]] = w;
     if (oracle)
         oracle->set_number(oracle->user, a.key, w);
     return PMESH_OK;
 }
 
-/* Place in its vertex' ring, from first[] on, of a corner that has the wedge
- * already; PMESH_NONE if there is none near (the wedge is then made again). */
-static uint32_t find_place(const pmesh_mesh *m, corner a)
+/* How many wedges of its vertex were made since that of this corner, which may
+ * have left the ring; PMESH_NONE if there is none near (the wedge is then made
+ * again). */
+static uint32_t find_place(const pmesh_codec *c, corner a)
 {
-    uint32_t start = m->first[m->vertex[a.half_edge]], h = start;
+    uint32_t w = c->wedge_last[c->mesh.vertex[a.half_edge]];
     if (a.wedge == PMESH_NONE)
         return PMESH_NONE;
-    for (uint32_t place = 0; h != PMESH_NONE && place < PMESH_MAX_PLACE;
-         place++, h = pmesh_corner_next(m, &start, h))
-        if (m->wedge[h] == a.wedge)
+    for (uint32_t place = 0; w != PMESH_NONE && place < PMESH_MAX_PLACE;
+         place++, w = c->wedge_before[w])
+        if (w == a.wedge)
             return place;
     return PMESH_NONE;
 }
@@ -57,17 +60,16 @@ static uint32_t find_place(const pmesh_mesh *m, corner a)
 static pmesh_status pick_wedge(pmesh_codec *c, pmesh_coder *coder, corner a,
                                uint32_t place)
 {
-    pmesh_mesh *m = &c->mesh;
-    uint32_t start = m->first[m->vertex[a.half_edge]], h = start;
+    uint32_t w = c->wedge_last[c->mesh.vertex[a.half_edge]];
 
     place = pmesh_code_number(coder, &c->models.wedge.pick, place);
     if (place >= PMESH_MAX_PLACE)
-        return corrupt(c, "SPEC 6.6: a corner's place is out of range");
-    for (; place > 0 && h != PMESH_NONE; place--)
-        h = pmesh_corner_next(m, &start, h);
-    if (h == PMESH_NONE || m->wedge[h] == PMESH_NONE)
-        return corrupt(c, "SPEC 6.6: no wedge at that corner");
-    m->wedge[a.half_edge] = m->wedge[h];
+        return corrupt(c, "SPEC 6.6: a wedge's place is out of range");
+    for (; place > 0 && w != PMESH_NONE; place--)
+        w = c->wedge_before[w];
+    if (w == PMESH_NONE)
+        return corrupt(c, "SPEC 6.6: the vertex has no such wedge");
+    c->mesh.wedge[a.half_edge] = w;
     return PMESH_OK;
 }
 
@@ -85,11 +87,25 @@ static uint32_t parent_like(const pmesh_mesh *m, uint32_t h, uint32_t guess)
     return PMESH_NONE;
 }
 
+/* Whether vertex x has two wedges at the half-edge h, one on each side: 2 if
+ * that is not known. */
+static unsigned seam_at(const pmesh_mesh *m, uint32_t h, uint32_t x)
+{
+    const uint32_t t = h == PMESH_NONE ? PMESH_NONE : m->twin[h];
+    if (t == PMESH_NONE)
+        return 2;
+    const bool starts = m->vertex[h] == x;
+    const uint32_t here = m->wedge[starts ? h : pmesh_next(h)];
+    const uint32_t there = m->wedge[starts ? pmesh_next(t) : t];
+    return here == PMESH_NONE || there == PMESH_NONE ? 2 : here != there;
+}
+
 /* One corner: like the first guess, like the second, like some other corner
  * of the vertex, or new. */
 static pmesh_status code_corner(pmesh_codec *c, pmesh_coder *coder,
                                 const pmesh_oracle *oracle, uint32_t h,
-                                uint32_t guess, uint32_t second)
+                                uint32_t guess, uint32_t second,
+                                unsigned context)
 {
     pmesh_wedge_models *models = &c->models.wedge;
     const corner a = ask(oracle, h);
@@ -100,18 +116,18 @@ static pmesh_status code_corner(pmesh_codec *c, pmesh_coder *coder,
     if (guess != PMESH_NONE) {
         const unsigned agree =
             second == PMESH_NONE ? 0 : second == guess ? 1 : 2;
-        if (!pmesh_code_bit(coder, &models->corner[agree], a.wedge != guess)) {
+        if (!pmesh_code_bit(coder, &models->corner[agree][context], a.wedge != guess)) {
             c->mesh.wedge[h] = guess;
             return PMESH_OK;
         }
         if (agree == 2 &&
-            !pmesh_code_bit(coder, &models->corner[3], a.wedge != second)) {
+            !pmesh_code_bit(coder, &models->corner[3][context], a.wedge != second)) {
             c->mesh.wedge[h] = second;
             return PMESH_OK;
         }
     }
     c->mesh.wedge[h] = PMESH_NONE;
-    const uint32_t place = find_place(&c->mesh, a);
+    const uint32_t place = find_place(c, a);
     if (pmesh_code_bit(coder, &models->choice[0], place != PMESH_NONE))
         return pick_wedge(c, coder, a, place);
     return make_wedge(c, oracle, a, parent_like(&c->mesh, h, guess));
@@ -124,6 +140,7 @@ pmesh_status pmesh_wedge_ring_code(pmesh_codec *c, pmesh_coder *coder,
     if (!m->value_count)
         return PMESH_OK;
     uint32_t start = m->first[x], before = PMESH_NONE;
+    c->wedge_last[x] = PMESH_NONE;
     for (uint32_t h = start; h != PMESH_NONE;
          h = pmesh_corner_next(m, &start, h))
         m->wedge[h] = PMESH_NONE;
@@ -133,7 +150,8 @@ pmesh_status pmesh_wedge_ring_code(pmesh_codec *c, pmesh_coder *coder,
         const pmesh_status status =
             before == PMESH_NONE
                 ? make_wedge(c, oracle, ask(oracle, h), PMESH_NONE)
-                : code_corner(c, coder, oracle, h, before, PMESH_NONE);
+                : code_corner(c, coder, oracle, h, before, PMESH_NONE,
+                              8);
         if (status != PMESH_OK)
             return status;
         before = m->wedge[h];
@@ -156,10 +174,15 @@ typedef struct change {
     uint32_t coarse[MOST_CORNERS]; /* their wedges before, or PMESH_NONE */
     uint32_t others;
     uint32_t at[MOST_OTHERS], guess[MOST_OTHERS], second[MOST_OTHERS];
+    /* Half-edges across which u's, and v's, wedge may differ, or NONE. */
+    uint32_t child_edge[MOST_OTHERS], parent_edge[MOST_OTHERS];
 } change;
 
-static void add_other(change *d, uint32_t h, uint32_t guess, uint32_t second)
+static void add_other(change *d, uint32_t h, uint32_t guess, uint32_t second,
+                      uint32_t child_edge, uint32_t parent_edge)
 {
+    d->child_edge[d->others] = child_edge;
+    d->parent_edge[d->others] = parent_edge;
     d->at[d->others] = h;
     d->guess[d->others] = guess;
     d->second[d->others++] = second;
@@ -210,14 +233,14 @@ static void gather_wings(change *d, const pmesh_mesh *m, uint32_t a, uint32_t b,
         at_v_a = wedge_at(m, start);
     }
     if (a != PMESH_NONE) {
-        add_other(d, a, at_v_a, at_v_b);
+        add_other(d, a, at_v_a, at_v_b, a + 1, PMESH_NONE);
         add_other(d, a + 1, wedge_end(m, m->twin[a + 1]),
-                  wedge_at(m, m->twin[a]));
+                  wedge_at(m, m->twin[a]), a + 1, a);
     }
     if (b != PMESH_NONE) {
-        add_other(d, b, at_v_b, at_v_a);
+        add_other(d, b, at_v_b, at_v_a, b + 1, PMESH_NONE);
         add_other(d, b + 2, wedge_at(m, m->twin[b + 1]),
-                  wedge_end(m, m->twin[b + 2]));
+                  wedge_end(m, m->twin[b + 2]), b + 1, b + 2);
     }
 }
 
@@ -230,9 +253,11 @@ static void gather_lone(change *d, const pmesh_mesh *m, uint32_t h, uint32_t u,
     uint32_t older = older_corner(m, m->vertex[at_v], fresh);
     if (older == PMESH_NONE)
         older = older_corner(m, u, fresh);
-    add_other(d, at_v, wedge_at(m, older), PMESH_NONE);
+    add_other(d, at_v, wedge_at(m, older), PMESH_NONE, PMESH_NONE,
+              PMESH_NONE);
     older = older_corner(m, m->vertex[h + 2], fresh);
-    add_other(d, h + 2, wedge_at(m, older), PMESH_NONE);
+    add_other(d, h + 2, wedge_at(m, older), PMESH_NONE, PMESH_NONE,
+              PMESH_NONE);
 }
 
 static void change_gather(change *d, pmesh_mesh *m, uint32_t u,
@@ -329,8 +354,8 @@ static pmesh_status code_child(pmesh_codec *c, pmesh_coder *coder,
                 d->coarse[i] == PMESH_NONE || d->coarse[i - 1] == PMESH_NONE
                     ? 2
                     : d->coarse[i] != d->coarse[i - 1];
-            const uint32_t place = find_place(m, a);
-            if (!pmesh_code_bit(coder, &c->models.wedge.seam[context],
+            const uint32_t place = find_place(c, a);
+            if (!pmesh_code_bit(coder, &c->models.wedge.seam[context][seam_at(m, h, m->vertex[pmesh_next(h)])],
                                 a.wedge != before))
                 m->wedge[h] = before;
             else if (pmesh_code_bit(coder, &c->models.wedge.choice[1],
@@ -357,6 +382,7 @@ static pmesh_status code_wedges(pmesh_codec *c, pmesh_coder *coder,
     pmesh_mesh *m = &c->mesh;
     change d;
     change_gather(&d, m, u, fresh);
+    c->wedge_last[u] = PMESH_NONE;
     /* What of v is one level coarser for wedges that no moved face has. */
     uint32_t coarse = d.others ? first_guess(&d, 0) : PMESH_NONE;
     for (uint32_t i = 0; i < d.count && coarse == PMESH_NONE; i++)
@@ -386,7 +412,9 @@ static pmesh_status code_wedges(pmesh_codec *c, pmesh_coder *coder,
     status = code_child(c, coder, oracle, &d, coarse);
     for (uint32_t i = 0; i < d.others && status == PMESH_OK; i++)
         status = code_corner(c, coder, oracle, d.at[i], d.guess[i],
-                             d.second[i]);
+                             d.second[i],
+                             3 * seam_at(m, d.child_edge[i], u) +
+                                 seam_at(m, d.parent_edge[i], m->parent[u]));
     return status;
 }
 
@@ -482,66 +510,4 @@ pmesh_status pmesh_wedge_split_code(pmesh_codec *c, pmesh_coder *coder,
             return status;
     }
     return m->value_count ? code_wedges(c, coder, oracle, u, f) : PMESH_OK;
-}
-
-/* Mean of the values at the other corners of the wedge's faces, from the corner
- * where it was made turning left as long as the wedge goes on, as far as they
- * are known; else the coarser wedge's; else the middle. Returns how many. */
-static uint32_t guess_values(const pmesh_codec *c, uint32_t w, uint32_t *guess)
-{
-    const pmesh_mesh *m = &c->mesh;
-    const uint32_t n = m->value_count;
-    const uint32_t start = c->wedge_corner[w];
-    uint32_t h = start, count = 0;
-
-    for (uint32_t i = 0; i < n; i++)
-        guess[i] = 0;
-    do {
-        const uint32_t other[2] = { m->wedge[pmesh_next(h)],
-                                    m->wedge[pmesh_prev(h)] };
-        for (int k = 0; k < 2; k++) {
-            if (other[k] >= w) /* unknown, PMESH_NONE included */
-                continue;
-            for (uint32_t i = 0; i < n; i++)
-                guess[i] += m->value[(size_t)other[k] * n + i];
-            count++;
-        }
-        h = pmesh_turn_left(m, h);
-    } while (h != PMESH_NONE && h != start && m->wedge[h] == w &&
-             count < PMESH_MAX_RING);
-
-    const uint32_t parent = m->wedge_parent[w];
-    for (uint32_t i = 0; i < n; i++) {
-        if (count)
-            guess[i] = (guess[i] + count / 2) / count;
-        else if (parent < w)
-            guess[i] = m->value[(size_t)parent * n + i];
-        else
-            guess[i] = c->component_max[i] / 2;
-    }
-    return count;
-}
-
-pmesh_status pmesh_wedge_values_code(pmesh_codec *c, pmesh_coder *coder,
-                                     const pmesh_oracle *oracle, uint32_t w)
-{
-    pmesh_mesh *m = &c->mesh;
-    uint32_t guess[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS];
-    const unsigned sure = guess_values(c, w, guess) > 2;
-    const uint16_t *truth = oracle ? oracle->values(oracle->user, w) : NULL;
-
-    for (uint32_t i = 0; i < m->value_count; i++) {
-        const int32_t r = truth ? truth[i] - (int32_t)guess[i] : 0;
-        const uint32_t size = pmesh_code_number(
-            coder, &c->models.value[i][sure], (uint32_t)(r < 0 ? -r : r));
-        const unsigned negative =
-            size && pmesh_code_bit(coder, &c->models.value_sign[i][sure],
-                                   r < 0);
-        const int64_t value =
-            negative ? (int64_t)guess[i] - size : (int64_t)guess[i] + size;
-        if (value < 0 || value > c->component_max[i])
-            return corrupt(c, "SPEC 6.6: an attribute value is out of range");
-        m->value[(size_t)w * m->value_count + i] = (uint16_t)value;
-    }
-    return PMESH_OK;
 }

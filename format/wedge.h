@@ -28,10 +28,6 @@ pmesh_status pmesh_wedge_split_code(pmesh_codec *c, pmesh_coder *coder,
                                     const pmesh_oracle *oracle, uint32_t u,
                                     const pmesh_fresh *fresh);
 
-/* Codes the values of the block's wedge w, all wedges before it being known. */
-pmesh_status pmesh_wedge_values_code(pmesh_codec *c, pmesh_coder *coder,
-                                     const pmesh_oracle *oracle, uint32_t w);
-
 /* Codes a face's material, given two guesses. */
 pmesh_status pmesh_material_code(pmesh_codec *c, pmesh_coder *coder,
                                  const pmesh_oracle *oracle, uint32_t face,

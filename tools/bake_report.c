@@ -40,6 +40,27 @@ static double bits_per_vertex(const pmesh_encode_report *e)
     return e->vertices > 0 ? 8.0 * (double)e->bytes / e->vertices : 0;
 }
 
+/* As in "texcoord_1"; there is one normal at most. */
+static void attribute_name(const pmesh_attribute_size *a, char name[32])
+{
+    if (a->kind == PMESH_NORMAL)
+        snprintf(name, 32, "%s", levels_kind_name(a->kind));
+    else
+        snprintf(name, 32, "%s_%u", levels_kind_name(a->kind), a->set);
+}
+
+static void print_attributes(const pmesh_encode_report *e, FILE *out)
+{
+    for (uint32_t i = 0; i < e->attribute_count; i++) {
+        char name[32];
+        attribute_name(&e->attributes[i], name);
+        fprintf(out, "%s%s %" PRIu64, i > 0 ? ", " : "  values of ", name,
+                e->attributes[i].bytes);
+    }
+    if (e->attribute_count > 0)
+        fprintf(out, " bytes\n");
+}
+
 static void print_parts(const pmesh_encode_report *e, FILE *out)
 {
     fprintf(out,
@@ -47,6 +68,7 @@ static void print_parts(const pmesh_encode_report *e, FILE *out)
             ", positions %" PRIu64 ", attributes %" PRIu64 " bytes\n",
             e->bytes_header, e->bytes_base, e->bytes_connectivity,
             e->bytes_positions, e->bytes_attributes);
+    print_attributes(e, out);
     if (e->bytes_lossless > 0)
         fprintf(out,
                 "  exact positions %" PRIu64
@@ -124,6 +146,13 @@ static void json_counts(json *j, const pmesh_encode_report *e)
     json_count(j, "positions", e->bytes_positions);
     json_count(j, "attributes", e->bytes_attributes);
     json_count(j, "lossless", e->bytes_lossless);
+    json_close(j);
+    json_open_flat(j, "attribute_bytes", '{');
+    for (uint32_t i = 0; i < e->attribute_count; i++) {
+        char name[32];
+        attribute_name(&e->attributes[i], name);
+        json_count(j, name, e->attributes[i].bytes);
+    }
     json_close(j);
     json_open_flat(j, "dropped", '{');
     json_count(j, "degenerate_faces", e->degenerate_faces);

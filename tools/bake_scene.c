@@ -18,6 +18,26 @@ static int collect(void *user, const void *data, size_t size)
     return bytes->failed;
 }
 
+/* Attributes of one kind and set count together. */
+static void add_attributes(pmesh_encode_report *sum,
+                           const pmesh_encode_report *r)
+{
+    for (uint32_t i = 0; i < r->attribute_count; i++) {
+        const pmesh_attribute_size *a = &r->attributes[i];
+        uint32_t k = 0;
+        while (k < sum->attribute_count &&
+               (sum->attributes[k].kind != a->kind ||
+                sum->attributes[k].set != a->set))
+            k++;
+        if (k == PMESH_MAX_ATTRIBUTES)
+            continue;
+        if (k == sum->attribute_count)
+            sum->attributes[sum->attribute_count++] =
+                (pmesh_attribute_size){ .kind = a->kind, .set = a->set };
+        sum->attributes[k].bytes += a->bytes;
+    }
+}
+
 /* What of one mesh counts for the scene. */
 static void add_counts(pmesh_encode_report *sum, const pmesh_encode_report *r)
 {
@@ -42,6 +62,7 @@ static void add_counts(pmesh_encode_report *sum, const pmesh_encode_report *r)
     sum->bytes_positions += r->bytes_positions;
     sum->bytes_attributes += r->bytes_attributes;
     sum->bytes_lossless += r->bytes_lossless;
+    add_attributes(sum, r);
     sum->seconds_import += r->seconds_import;
     sum->seconds_contract += r->seconds_contract;
     sum->seconds_code += r->seconds_code;

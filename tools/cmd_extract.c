@@ -23,7 +23,8 @@ typedef struct options {
     uint32_t faces, mesh;
     uint64_t bytes;
     double ratio, error; /* negative: not given */
-    bool inflate, strict, salvage, no_attributes, quiet;
+    const char *lods;
+    bool meshopt, inflate, strict, salvage, no_attributes, quiet;
 } options;
 
 static const args_option option_table[] = {
@@ -47,6 +48,14 @@ static const args_option option_table[] = {
     { .name = "mesh", .kind = ARGS_COUNT, .value = "N", .min = 0,
       .max = UINT32_MAX - 1, .offset = offsetof(options, mesh),
       .help = "of a scene, mesh N only, from 0, in its own space" },
+    { .name = "lods", .kind = ARGS_TEXT, .value = "R,R,...",
+      .offset = offsetof(options, lods),
+      .help = "of a scene, into .glb or .gltf, a chain of levels by\n"
+              "MSFT_lod: 100%,25%,5% of the faces" },
+    { .name = "meshopt", .kind = ARGS_FLAG,
+      .offset = offsetof(options, meshopt),
+      .help = "of a scene, into .glb or .gltf, geometry packed by\n"
+              "EXT_meshopt_compression" },
     { .name = "inflate", .kind = ARGS_FLAG,
       .offset = offsetof(options, inflate),
       .help = "swell coarse levels to the full mesh's volume: closer\n"
@@ -227,11 +236,17 @@ static int extract_from(const extraction *job, const file_data *data)
                                  .format = job->format, .faces = o->faces,
                                  .ratio = o->ratio, .error = o->error,
                                  .mesh = o->mesh, .inflate = o->inflate,
+                                 .lods = o->lods, .meshopt = o->meshopt,
                                  .strict = o->strict,
                                  .salvage = o->salvage,
                                  .no_attributes = o->no_attributes,
                                  .quiet = o->quiet },
                              data);
+    if (o->lods || o->meshopt) {
+        report_error(file_input_name(job->input), NULL, "is a single mesh; "
+                     "--lods and --meshopt are for scenes");
+        return CMD_USAGE;
+    }
     if (o->mesh != EXTRACT_ALL_MESHES && o->mesh != 0) {
         report_error(file_input_name(job->input), NULL,
                      "is a single mesh, not a scene");

@@ -41,17 +41,6 @@ static const args_command command = {
         "  head -c 10k bunny.pmesh | pmesh info -\n",
 };
 
-static const char *kind_name(pmesh_attribute_kind kind)
-{
-    switch (kind) {
-    case PMESH_NORMAL: return "normal";
-    case PMESH_TEXCOORD: return "texcoord";
-    case PMESH_COLOR: return "color";
-    case PMESH_GENERIC: return "generic";
-    }
-    return "unknown";
-}
-
 static void print_attributes(const pmesh_header *h)
 {
     printf("attributes   ");
@@ -59,7 +48,7 @@ static void print_attributes(const pmesh_header *h)
         printf("none");
     for (uint32_t i = 0; i < h->attribute_count; i++) {
         const pmesh_attribute *a = &h->attributes[i];
-        printf("%s%s", i > 0 ? ", " : "", kind_name(a->kind));
+        printf("%s%s", i > 0 ? ", " : "", levels_kind_name(a->kind));
         if (a->kind != PMESH_NORMAL)
             printf(" %u", a->set);
         printf(" (%u bits)", a->bits);
@@ -136,7 +125,7 @@ static void json_lists(json *j, const stream *s)
     json_open(j, "attributes", '[');
     for (uint32_t i = 0; i < h->attribute_count; i++) {
         json_open_flat(j, NULL, '{');
-        json_text(j, "kind", kind_name(h->attributes[i].kind));
+        json_text(j, "kind", levels_kind_name(h->attributes[i].kind));
         json_count(j, "set", h->attributes[i].set);
         json_count(j, "components", h->attributes[i].components);
         json_count(j, "bits", h->attributes[i].bits);

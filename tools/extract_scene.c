@@ -13,6 +13,8 @@
 #include "tools/scene_file.h"
 #include "tools/scene_write.h"
 
+enum { MAX_LODS = 8 };
+
 typedef struct job {
     const extract_request *request;
     const file_data *data;
@@ -20,6 +22,8 @@ typedef struct job {
     uint64_t all_faces;
     pmesh_scene_shown shown;
     asset notes; /* its warnings */
+    uint64_t lod_faces[MAX_LODS];
+    size_t lod_count;
 } job;
 
 uint64_t extract_face_bound(uint32_t faces, double ratio, uint64_t all)
@@ -116,6 +120,30 @@ static bool encode_asset(const job *j, const asset *mesh, asset_bytes *out,
     return asset_write(&shown, j->request->format, out, error);
 }
 
+/* "100%,25%,5%" as face budgets, each below the one before. */
+static bool read_lods(job *j, asset_error *error)
+{
+    double last = 2;
+
+    for (const char *at = j->request->lods; at; at = strchr(at, ',')) {
+        double share = -1;
+        at += *at == ',';
+        const char *end = asset_number_parse(at, at + strcspn(at, ","), &share);
+        if (end > at && *end == '%') {
+            share /= 100;
+            end++;
+        }
+        if (end == at || (*end != ',' && *end != '\0') || !(share > 0) ||
+            !(share <= 1) || !(share < last) || j->lod_count == MAX_LODS)
+            return asset_fail(error, "", "--lods are up to %d falling shares "
+                              "of the faces: 100%%,25%%,5%%", MAX_LODS);
+        last = share;
+        j->lod_faces[j->lod_count++] =
+            extract_face_bound(0, share, j->all_faces);
+    }
+    return true;
+}
+
 static bool encode(job *j, const pmesh_decoder *one, asset_bytes *out,
                    asset_error *error)
 {
@@ -124,10 +152,17 @@ static bool encode(job *j, const pmesh_decoder *one, asset_bytes *out,
     asset mesh;
 
     if (!one && gltf && !r->no_attributes)
-        return scene_write(j->file.scene,
+        return read_lods(j, error) &&
+               scene_write(j->file.scene,
                            (scene_style){ .glb = r->format == ASSET_GLB,
-                                          .inflate = r->inflate },
+                                          .inflate = r->inflate,
+                                          .meshopt = r->meshopt,
+                                          .lod_faces = j->lod_faces,
+                                          .lod_count = j->lod_count },
                            out, &j->notes, error);
+    if (r->lods || r->meshopt)
+        return asset_fail(error, "", "--lods and --meshopt need a whole scene "
+                          "in a .glb or .gltf");
     if (!(one ? asset_from_decoder(one, &mesh, error)
               : scene_file_merge(&j->file, r->inflate, &mesh, error)))
         return false;

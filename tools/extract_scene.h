@@ -20,7 +20,8 @@ typedef struct extract_request {
     uint32_t faces;      /* 0: no bound */
     double ratio, error; /* negative: not given */
     uint32_t mesh;       /* one only, in its own space, or ALL_MESHES */
-    bool inflate, strict, salvage, no_attributes, quiet;
+    const char *lods;    /* ratios of a chain of levels, by commas; or NULL */
+    bool meshopt, inflate, strict, salvage, no_attributes, quiet;
 } extract_request;
 
 /* Returns an exit code and has said why unless it is CMD_DONE. */

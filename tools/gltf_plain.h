@@ -66,6 +66,11 @@ bool gltf_is_harmless(const std::string &extension);
 
 /* The bytes of a view compressed by EXT_meshopt_compression; `source` is what
  * its byteOffset and byteLength cut out of the buffer. */
+/* meshoptimizer's code of `count` elements, or of a primitive's indices, of
+ * `stride` bytes each: what gltf_inflate() takes. */
+gltf_bytes gltf_pack(const gltf_bytes &in, size_t count, size_t stride,
+                     bool indices);
+
 gltf_bytes gltf_inflate(const gltf_item &extension, const uint8_t *source,
                         size_t size, gltf_budget &budget);
 

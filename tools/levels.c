@@ -69,6 +69,17 @@ const char *levels_placement_name(pmesh_placement placement)
     return "unknown";
 }
 
+const char *levels_kind_name(pmesh_attribute_kind kind)
+{
+    switch (kind) {
+    case PMESH_NORMAL: return "normal";
+    case PMESH_TEXCOORD: return "texcoord";
+    case PMESH_COLOR: return "color";
+    case PMESH_GENERIC: return "generic";
+    }
+    return "unknown";
+}
+
 const char *levels_base_name(pmesh_base_coder coder)
 {
     return coder == PMESH_BASE_DRACO ? "draco" : "native";

@@ -25,6 +25,7 @@ void levels_json(json *j, const pmesh_level *levels, uint32_t count,
 
 const char *levels_profile_name(pmesh_profile profile);
 const char *levels_placement_name(pmesh_placement placement);
+const char *levels_kind_name(pmesh_attribute_kind kind);
 const char *levels_base_name(pmesh_base_coder coder);
 
 #endif

@@ -7,17 +7,16 @@
 #include "tools/scene_write.h"
 
 #include <cstring>
-#include <memory>
 #include <new>
 
-#include "tools/gltf_document.h"
 #include "tools/pack.h"
-#include "tools/scene_geometry.h"
+#include "tools/scene_writer.h"
 
 namespace {
 
 enum { MAX_DOCUMENT = 1 << 28 };
 enum { TARGET_VERTICES = 34962, TARGET_INDICES = 34963 };
+#define GLTF_MESHOPT "EXT_meshopt_compression"
 
 /* One grey pixel, in the place of an image that has not arrived. */
 const uint8_t pixel[] = {
@@ -29,49 +28,11 @@ const uint8_t pixel[] = {
     0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82
 };
 
-class writer {
-public:
-    writer(pmesh_scene *from, scene_style how, asset *warn)
-        : scene(from), style(how), notes(warn)
-    {
-    }
-    void write(asset_bytes *out);
-
-private:
-    pmesh_scene *scene;
-    scene_style style;
-    asset *notes;
-    gltf_document doc;
-    gltf_bytes bin;
-    std::vector<size_t> free_accessors, free_views; /* the last is next */
-    std::map<uint32_t, std::unique_ptr<scene_geometry>> meshes;
-    std::vector<size_t> resource_start; /* in bin, or in the stream */
-    std::vector<bool> in_stream;        /* by resource */
-    std::vector<size_t> image_views;    /* that show one of these */
-
-    void read_document(asset_bytes *plain);
-    void open();
-    std::vector<size_t> free_list(const char *name);
-    size_t place(const char *list, std::vector<size_t> &free,
-                 gltf_document value);
-    void align(size_t to);
-    size_t add(const scene_array &data, int target, bool bounds);
-    scene_form form(const gltf_document &record) const;
-    scene_geometry &geometry(const gltf_document &record);
-    void primitive(gltf_document &p);
-    void primitives();
-    void drop_animations();
-    void missing_images(const std::vector<bool> &missing);
-    void resources();
-    void move_views();
-    void drop_marks();
-    void add_stream();
-    void put_glb(const std::string &json, asset_bytes *out) const;
-};
+} // namespace
 
 /* ---- reading the document ----------------------------------------------- */
 
-std::vector<size_t> writer::free_list(const char *name)
+std::vector<size_t> scene_writer::free_list(const char *name)
 {
     std::vector<size_t> numbers;
     const size_t size = doc.contains(name) ? doc.at(name).size() : 0;
@@ -89,7 +50,7 @@ std::vector<size_t> writer::free_list(const char *name)
 }
 
 /* As text, at most as long as a document may be. */
-void writer::read_document(asset_bytes *plain)
+void scene_writer::read_document(asset_bytes *plain)
 {
     const pmesh_scene_bytes text = pmesh_scene_document(scene);
     const auto size = static_cast<size_t>(text.size);
@@ -104,7 +65,7 @@ void writer::read_document(asset_bytes *plain)
         throw std::runtime_error("the document cannot be unpacked");
 }
 
-void writer::open()
+void scene_writer::open()
 {
     asset_bytes plain = {};
     const std::unique_ptr<asset_bytes, void (*)(asset_bytes *)> text(
@@ -129,7 +90,7 @@ void writer::open()
 
 /* ---- new accessors ------------------------------------------------------ */
 
-size_t writer::place(const char *list, std::vector<size_t> &free,
+size_t scene_writer::place(const char *list, std::vector<size_t> &free,
                      gltf_document value)
 {
     if (free.empty()) {
@@ -142,12 +103,12 @@ size_t writer::place(const char *list, std::vector<size_t> &free,
     return at;
 }
 
-void writer::align(size_t to)
+void scene_writer::align(size_t to)
 {
     bin.resize((bin.size() + to - 1) / to * to);
 }
 
-gltf_document numbers_of(const std::vector<float> &values)
+static gltf_document numbers_of(const std::vector<float> &values)
 {
     gltf_document list = gltf_document::array();
     for (const float v : values)
@@ -155,20 +116,47 @@ gltf_document numbers_of(const std::vector<float> &values)
     return list;
 }
 
-/* Puts data into BIN; the number of their accessor. */
-size_t writer::add(const scene_array &data, int target, bool bounds)
+/* Puts data into BIN; their view. Packed ones would lie in a second buffer, of
+ * which there is nothing but its size. */
+gltf_document scene_writer::view_of(const scene_array &data, int target)
 {
-    static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
-    gltf_document view = { { "buffer", 0 } }, accessor;
+    const bool indices = target == TARGET_INDICES;
+    gltf_document view = { { "buffer", style.meshopt ? 1 : 0 } };
 
     align(4);
-    view["byteOffset"] = bin.size();
+    view["byteOffset"] = style.meshopt ? unpacked : bin.size();
     view["byteLength"] = data.bytes.size();
     if (data.stride > 0)
         view["byteStride"] = data.stride;
     view["target"] = target;
-    bin.insert(bin.end(), data.bytes.begin(), data.bytes.end());
-    accessor["bufferView"] = place("bufferViews", free_views, std::move(view));
+    if (style.meshopt) {
+        const size_t stride = data.bytes.size() / data.count;
+        const gltf_bytes packed =
+            gltf_pack(data.bytes, data.count, stride, indices);
+        view["extensions"][GLTF_MESHOPT] = {
+            { "buffer", 0 },
+            { "byteOffset", bin.size() },
+            { "byteLength", packed.size() },
+            { "byteStride", stride },
+            { "count", data.count },
+            { "mode", indices ? "TRIANGLES" : "ATTRIBUTES" }
+        };
+        unpacked += (data.bytes.size() + 3) / 4 * 4;
+        bin.insert(bin.end(), packed.begin(), packed.end());
+    } else {
+        bin.insert(bin.end(), data.bytes.begin(), data.bytes.end());
+    }
+    return view;
+}
+
+/* The number of the data's accessor. */
+size_t scene_writer::add(const scene_array &data, int target, bool bounds)
+{
+    static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
+    gltf_document accessor;
+
+    accessor["bufferView"] =
+        place("bufferViews", free_views, view_of(data, target));
     accessor["componentType"] = data.component_type;
     if (data.normalised)
         accessor["normalized"] = true;
@@ -181,7 +169,7 @@ size_t writer::add(const scene_array &data, int target, bool bounds)
     return place("accessors", free_accessors, std::move(accessor));
 }
 
-scene_form writer::form(const gltf_document &record) const
+scene_form scene_writer::form(const gltf_document &record) const
 {
     static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
     const std::string type = record.at("type").get<std::string>();
@@ -195,7 +183,7 @@ scene_form writer::form(const gltf_document &record) const
     return f;
 }
 
-scene_geometry &writer::geometry(const gltf_document &record)
+scene_geometry &scene_writer::geometry(const gltf_document &record)
 {
     const auto number = record.at("mesh").get<uint32_t>();
     auto &mesh = meshes[number];
@@ -205,7 +193,7 @@ scene_geometry &writer::geometry(const gltf_document &record)
     return *mesh;
 }
 
-void writer::primitive(gltf_document &p)
+void scene_writer::primitive(gltf_document &p)
 {
     const gltf_document record = p["extensions"][GLTF_PROGRESSIVE];
     scene_geometry &mesh = geometry(record);
@@ -234,19 +222,32 @@ void writer::primitive(gltf_document &p)
         gltf_erase_extension(p, GLTF_PROGRESSIVE);
 }
 
-void writer::primitives()
+/* Whether any of the mesh's primitives is coded: these get accessors. */
+bool scene_writer::fill(gltf_document &mesh)
 {
-    for (gltf_document &mesh : doc.at("meshes"))
-        for (gltf_document &p : mesh.at("primitives"))
-            if (p.contains("extensions") &&
-                p["extensions"].contains(GLTF_PROGRESSIVE))
-                primitive(p);
+    bool any = false;
+    for (gltf_document &p : mesh.at("primitives"))
+        if (p.contains("extensions") &&
+            p["extensions"].contains(GLTF_PROGRESSIVE)) {
+            primitive(p);
+            any = true;
+        }
+    return any;
+}
+
+void scene_writer::primitives()
+{
+    if (style.lod_count > 0)
+        lods();
+    else
+        for (gltf_document &mesh : doc.at("meshes"))
+            fill(mesh);
 }
 
 /* ---- resources ---------------------------------------------------------- */
 
 /* Without their data; their accessors become free places. */
-void writer::drop_animations()
+void scene_writer::drop_animations()
 {
     std::vector<bool> used;
     asset_warn(notes, "the animations have not arrived and are left out");
@@ -267,7 +268,7 @@ void writer::drop_animations()
 }
 
 /* Points the images at the pixel, whose view takes the place of theirs. */
-void writer::missing_images(const std::vector<bool> &missing)
+void scene_writer::missing_images(const std::vector<bool> &missing)
 {
     size_t count = 0;
     for (gltf_document &image : doc["images"]) {
@@ -287,7 +288,7 @@ void writer::missing_images(const std::vector<bool> &missing)
 }
 
 /* Moves each into BIN, or what stands for it. */
-void writer::resources()
+void scene_writer::resources()
 {
     pmesh_scene_header header = {};
     std::vector<bool> missing, image;
@@ -336,7 +337,7 @@ void writer::resources()
 }
 
 /* Before the geometry's views are added: all that there are name resources. */
-void writer::move_views()
+void scene_writer::move_views()
 {
     for (gltf_document &view : doc["bufferViews"]) {
         if (!view.is_object())
@@ -354,7 +355,7 @@ void writer::move_views()
 }
 
 /* What is left of our marks: places that nothing took. */
-void writer::drop_marks()
+void scene_writer::drop_marks()
 {
     for (const size_t at : free_accessors)
         doc["accessors"][at] = { { "componentType", 5126 },
@@ -365,8 +366,19 @@ void writer::drop_marks()
     gltf_erase_extension(doc, GLTF_PROGRESSIVE);
 }
 
+void scene_writer::use_extension(const char *name, bool required)
+{
+    for (const char *list : { "extensionsUsed", "extensionsRequired" }) {
+        bool there = !required && list[10] == 'R';
+        for (const gltf_document &one : doc.value(list, gltf_document::array()))
+            there = there || one == name;
+        if (!there)
+            doc[list].push_back(name);
+    }
+}
+
 /* The last of all bytes, so that a reader can go on with it. */
-void writer::add_stream()
+void scene_writer::add_stream()
 {
     align(4);
     for (const size_t at : image_views) {
@@ -375,7 +387,7 @@ void writer::add_stream()
     }
     doc["extensions"][GLTF_PROGRESSIVE] = { { "bufferView",
                                               doc["bufferViews"].size() } };
-    doc["extensionsUsed"].push_back(GLTF_PROGRESSIVE);
+    use_extension(GLTF_PROGRESSIVE, false);
     doc["bufferViews"].push_back({ { "buffer", 0 },
                                    { "byteOffset", bin.size() },
                                    { "byteLength", style.stream->size } });
@@ -385,7 +397,7 @@ void writer::add_stream()
 
 /* ---- the file ----------------------------------------------------------- */
 
-void put_u32(asset_bytes *out, size_t value)
+static void put_u32(asset_bytes *out, size_t value)
 {
     const uint8_t bytes[4] = { static_cast<uint8_t>(value),
                                static_cast<uint8_t>(value >> 8),
@@ -394,7 +406,7 @@ void put_u32(asset_bytes *out, size_t value)
     asset_put(out, bytes, sizeof bytes);
 }
 
-void writer::put_glb(const std::string &json, asset_bytes *out) const
+void scene_writer::put_glb(const std::string &json, asset_bytes *out) const
 {
     const size_t text = (json.size() + 3) / 4 * 4;
     const uint64_t total = uint64_t{ 12 + 8 + 8 } + text + bin.size();
@@ -413,7 +425,7 @@ void writer::put_glb(const std::string &json, asset_bytes *out) const
     asset_put(out, bin.data(), bin.size());
 }
 
-std::string base64(const gltf_bytes &in)
+static std::string base64(const gltf_bytes &in)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnop"
                                  "qrstuvwxyz0123456789+/";
@@ -428,7 +440,7 @@ std::string base64(const gltf_bytes &in)
     return out;
 }
 
-void writer::write(asset_bytes *out)
+void scene_writer::write(asset_bytes *out)
 {
     open();
     resources();
@@ -442,6 +454,12 @@ void writer::write(asset_bytes *out)
     if (!style.glb)
         doc["buffers"][0]["uri"] =
             "data:application/octet-stream;base64," + base64(bin);
+    if (style.meshopt) {
+        doc["buffers"].push_back(
+            { { "byteLength", unpacked },
+              { "extensions", { { GLTF_MESHOPT, { { "fallback", true } } } } } });
+        use_extension(GLTF_MESHOPT, true);
+    }
     if (style.glb) {
         put_glb(doc.dump(), out);
     } else {
@@ -452,7 +470,7 @@ void writer::write(asset_bytes *out)
         throw std::bad_alloc();
 }
 
-uint32_t get_u32(const uint8_t *p)
+static uint32_t get_u32(const uint8_t *p)
 {
     return p[0] | static_cast<uint32_t>(p[1]) << 8 |
            static_cast<uint32_t>(p[2]) << 16 |
@@ -460,8 +478,8 @@ uint32_t get_u32(const uint8_t *p)
 }
 
 /* The stream's view, out of the text of a GLB. Throws what the parser does. */
-bool find_view(const uint8_t *json, size_t json_size, size_t *offset,
-               size_t *size)
+static bool find_view(const uint8_t *json, size_t json_size, size_t *offset,
+                      size_t *size)
 {
     const gltf_json doc = gltf_json::parse(json, json + json_size);
     const gltf_json &view = doc.at("bufferViews")
@@ -473,8 +491,6 @@ bool find_view(const uint8_t *json, size_t json_size, size_t *offset,
     *size = view.at("byteLength").get<size_t>();
     return view.at("buffer") == 0;
 }
-
-} // namespace
 
 bool scene_find_stream(const uint8_t *data, size_t data_size, size_t *offset,
                        size_t *size)
@@ -506,7 +522,7 @@ bool scene_write(pmesh_scene *scene, scene_style style, asset_bytes *out,
                  asset *notes, asset_error *error)
 {
     try {
-        writer(scene, style, notes).write(out);
+        scene_writer(scene, style, notes).write(out);
         return true;
     } catch (const std::bad_alloc &) {
         return asset_fail(error, "", "out of memory");

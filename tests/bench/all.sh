@@ -5,6 +5,8 @@
 set -eu
 echo "== bytes of complete files"
 tests/bench/size.sh
+echo "== bytes of meshes with attributes"
+tests/bench/attribute-size.sh
 echo "== bytes against distance"
 tests/bench/rate.sh
 echo "== distance at equal face counts: strict quadric order"

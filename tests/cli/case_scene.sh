@@ -33,6 +33,18 @@ check 'to another format' 0 extract two.pmesh -q -o back.obj
 ok 'both meshes are there' test "$(faces back.obj)" = 2
 check 'one mesh' 0 extract two.pmesh -q --mesh 1 -o back.obj
 ok 'one mesh is one' test "$(faces back.obj)" = 1
+check 'levels' 0 extract two.pmesh -q --lods 100%,50% -o x.glb
+for lods in '' 50%,100% 0% 120% 1,x 1,; do
+    check "levels \"$lods\"" 1 extract two.pmesh --lods "$lods" -o x.glb
+done
+check 'levels of a mesh' 2 extract one.pmesh --lods 100%,50% -o x.glb
+check 'levels into another format' 1 extract two.pmesh --lods 1 -o x.obj
+check 'a GLB with a scene' 0 bake two.gltf -q -o tail.glb
+ok 'info sees the scene' "$PMESH" info --json tail.glb
+check 'verify it' 0 verify tail.glb
+check 'extract from it' 0 extract tail.glb -q -o x.glb
+check 'compare it' 0 compare two.gltf tail.glb
+check 'a GLB of what is no scene' 2 bake back.obj -o x.glb
 check 'a mesh that is not there' 2 extract two.pmesh --mesh 2 -o x.obj
 check '--mesh of a single mesh' 2 extract one.pmesh --mesh 1 -o x.obj
 check 'compare scene and input' 0 compare two.gltf two.pmesh

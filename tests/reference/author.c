@@ -233,7 +233,7 @@ static int choose_any(void *user, const ref_model *m)
         return (int)shape_random(&w->seed, 2);
     if (within(m, r->residual, sizeof r->residual))
         return shape_random(&w->seed, 50) ? 0 : expected;
-    if (within(m, r->wedge_models.value, sizeof r->wedge_models.value))
+    if (within(m, r->channel_models, sizeof r->channel_models))
         return shape_random(&w->seed, 8) == 0;
     if (within(m, &r->wedge_models.pick, sizeof r->wedge_models.pick))
         return shape_random(&w->seed, 5) == 0;

@@ -215,10 +215,23 @@ typedef struct ref_join_models {
 } ref_join_models;
 
 typedef struct ref_wedge_models {
-    ref_model material[3], ordinary[3], seam[3], corner[4], choice[2];
-    ref_number pick, value[REF_VALUES][2];
-    ref_model value_sign[REF_VALUES][2];
+    ref_model material[3], ordinary[3], seam[3][3], corner[4][3][3], choice[2];
+    ref_number pick;
 } ref_wedge_models;
+
+/* Of a component. */
+typedef struct ref_value_models {
+    ref_cell here[40];
+    ref_expected by_spread[5][32], by_far[5][5];
+    ref_fit fit[3]; /* [0] of each alone */
+} ref_value_models;
+
+/* Of an attribute. */
+typedef struct ref_channel_models {
+    ref_cell any[40];
+    ref_model low[40][3], differs[3][3];
+    ref_number escape;
+} ref_channel_models;
 
 typedef struct ref_exact_models {
     ref_model same[3][2][16], rare[3];
@@ -267,6 +280,8 @@ typedef struct ref {
     ref_fit fit[3][9][3];
     ref_residual_models residual[2];
     ref_wedge_models wedge_models;
+    ref_value_models value_models[REF_VALUES];
+    ref_channel_models channel_models[REF_ATTRIBUTES];
     ref_join_models join;
     ref_exact_models exact_models;
     uint32_t exact_last[3][4096]; /* last vertex of a coordinate mod 4096 */
@@ -375,6 +390,22 @@ ref_prediction ref_predict(const ref *r, uint32_t x, uint32_t y, ref_vec q,
                            int kind, uint32_t provisional);
 void ref_learn(ref *r, const ref_prediction *p, ref_vec final);
 ref_vec ref_read_residual(ref *r, ref_prediction *p);
+/* M and B of fit->..[which] take F and Y in, each a vector (or a number and two
+ * zeros); the weights follow. */
+void ref_take_in(ref_fit *fit, int which, const ref_vec *f, ref_vec y,
+                 int64_t weight, int64_t pull);
+/* Where a coordinate is expected, and the models of its scale. */
+typedef struct ref_near {
+    ref_cell *any, *here;
+    ref_model *low;
+    ref_number *escape;
+    int scale;
+    int64_t mean;
+} ref_near;
+int64_t ref_read_near(ref *r, const ref_near *at);
+int ref_how_far(int64_t coordinate, const ref_near *at);
+int64_t ref_len(ref_vec v);
+int64_t ref_isqrt(int64_t v);
 void ref_read_positions(ref *r);
 
 /* 6.6. */

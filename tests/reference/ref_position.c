@@ -26,7 +26,7 @@ static ref_vec vshare(ref_vec v, int64_t k)
     return v;
 }
 
-static int64_t len(ref_vec v)
+int64_t ref_len(ref_vec v)
 {
     int64_t m = 0, sum = 0;
     for (int i = 0; i < 3; i++) {
@@ -37,7 +37,7 @@ static int64_t len(ref_vec v)
     return m + ref_shift(sum - m, 2) + ref_shift(sum - m, 3);
 }
 
-static int64_t isqrt(int64_t v)
+int64_t ref_isqrt(int64_t v)
 {
     int64_t root = 0;
     for (int64_t step = (int64_t)1 << 31; step > 0; step /= 2)
@@ -78,7 +78,7 @@ static void set_edges(frame *m)
     m->mean = vshare(sum, m->n);
     for (int i = 0; i < m->n; i++) {
         m->d[i] = ref_sub(m->e[i], m->mean);
-        m->l[i] = len(m->d[i]);
+        m->l[i] = ref_len(m->d[i]);
     }
 }
 
@@ -92,7 +92,7 @@ static void set_normal(frame *m)
     const int drop = ref_bits(ref_or(sum)) - 15;
     if (drop > 0)
         sum = ref_vshift(sum, drop);
-    const int64_t length = isqrt(ref_dot(sum, sum));
+    const int64_t length = ref_isqrt(ref_dot(sum, sum));
     if (length == 0) {
         REF_SEEN(normal_0);
         return;
@@ -187,7 +187,7 @@ static ref_vec centre_of_faces(const frame *m)
     ref_vec v[REF_MEMBERS];
     uint64_t all = 0;
     for (int i = 0; i < faces_of(m); i++) {
-        g[i] = len(m->f[i]);
+        g[i] = ref_len(m->f[i]);
         v[i] = ref_add(m->d[i], m->d[(i + 1) % m->n]);
         all |= (uint64_t)g[i];
     }
@@ -312,9 +312,8 @@ static int64_t smaller(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* M and B take F and Y in, each a vector (or a number and two zeros). */
-static void take_in(ref_fit *fit, int which, const ref_vec *f, ref_vec y,
-                    int64_t weight, int64_t pull)
+void ref_take_in(ref_fit *fit, int which, const ref_vec *f, ref_vec y,
+                 int64_t weight, int64_t pull)
 {
     int64_t(*m)[REF_TERMS] = fit->m[which];
     int64_t *b = fit->b[which], *w = fit->w[which];
@@ -360,13 +359,13 @@ void ref_learn(ref *r, const ref_prediction *p, ref_vec final)
         high[t] = (ref_vec){ { ref_shift(p->h[t], 1) } };
     }
     const ref_vec part = ref_vshift(ref_times(p->normal, up), 14);
-    take_in(fit, 0, flat, ref_vshift(ref_sub(G, part), 1),
-            smaller((1 << 26) / (squared(p, p->along) + ef + 1), 1 << 18),
-            1 << 24);
-    take_in(fit, 1, high, (ref_vec){ { ref_shift(up, 1) } },
-            smaller((1 << 26) / (squared(p, p->across) / 2 + eh + 1),
-                    1 << 18),
-            1 << 27);
+    ref_take_in(fit, 0, flat, ref_vshift(ref_sub(G, part), 1),
+                smaller((1 << 26) / (squared(p, p->along) + ef + 1), 1 << 18),
+                1 << 24);
+    ref_take_in(fit, 1, high, (ref_vec){ { ref_shift(up, 1) } },
+                smaller((1 << 26) / (squared(p, p->across) / 2 + eh + 1),
+                        1 << 18),
+                1 << 27);
 }
 
 /* ---- a block ------------------------------------------------------------ */

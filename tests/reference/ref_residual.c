@@ -85,24 +85,22 @@ static void expect(axis_state *a, int k, int64_t *mean, int64_t *square)
     }
 }
 
-static int64_t read_size(ref *r, ref_residual_models *m, int scale, int k,
-                         int far)
+static int64_t read_size(ref *r, const ref_near *at)
 {
-    ref_cell *any = &m->any[scale], *here = &m->here[scale][k][far];
-    const int shift = scale > 11 ? scale / 2 - 5 : 0;
+    const int shift = at->scale > 11 ? at->scale / 2 - 5 : 0;
     uint64_t size = 0;
     while (size < 14 &&
-           ref_bit2(&r->in, &any->unary[size], &here->unary[size]))
+           ref_bit2(&r->in, &at->any->unary[size], &at->here->unary[size]))
         size++;
     if (size == 14) {
         REF_SEEN(residual_escape);
-        size += ref_read_number(&r->in, &m->escape);
+        size += ref_read_number(&r->in, at->escape);
     }
     for (int i = 0, node = 0; i < shift; i++) {
         int b;
         if (i < 2) {
             REF_SEEN(residual_low);
-            b = ref_bit(&r->in, &m->low[scale][node]);
+            b = ref_bit(&r->in, &at->low[node]);
             node = 1 + b;
         } else {
             REF_SEEN(residual_raw);
@@ -113,28 +111,30 @@ static int64_t read_size(ref *r, ref_residual_models *m, int scale, int k,
     return (int64_t)size + 1;
 }
 
-static int64_t read_axis(ref *r, ref_residual_models *m, int64_t mean,
-                         int64_t square, int k, int far, int *scale)
+int64_t ref_read_near(ref *r, const ref_near *at)
 {
-    const int64_t center = ref_shift(mean + 8, 4), off = mean - 16 * center;
+    const int64_t center = ref_shift(at->mean + 8, 4);
+    const int64_t off = at->mean - 16 * center;
     const int lean = off < -2 ? 0 : off > 2 ? 2 : 1;
-    *scale = 0;
-    if (square > 0)
-        *scale = ref_bits((uint64_t)square) - 1;
-    *scale = *scale < 59 ? *scale : 59;
-    ref_cell *any = &m->any[*scale], *here = &m->here[*scale][k][far];
+    ref_cell *any = at->any, *here = at->here;
     if (!ref_bit2(&r->in, &any->zero[lean], &here->zero[lean]))
         return center;
     const int minus = ref_bit2(&r->in, &any->sign[lean], &here->sign[lean]);
-    const int64_t size = read_size(r, m, *scale, k, far);
+    const int64_t size = read_size(r, at);
     return minus ? center - size : center + size;
 }
 
-static int how_far(int64_t coordinate, int64_t mean, int scale)
+static int scale_of(int64_t square)
 {
-    const int64_t z = absolute(16 * coordinate - mean);
+    const int scale = square > 0 ? ref_bits((uint64_t)square) - 1 : 0;
+    return scale < 59 ? scale : 59;
+}
+
+int ref_how_far(int64_t coordinate, const ref_near *at)
+{
+    const int64_t z = absolute(16 * coordinate - at->mean);
     const int o =
-        z == 0 ? 0 : ref_bits((uint64_t)z * (uint64_t)z) + 3 - scale;
+        z == 0 ? 0 : ref_bits((uint64_t)z * (uint64_t)z) + 3 - at->scale;
     if (z > UINT32_MAX)
         return 3;
     return o < 2 ? 0 : o < 4 ? 1 : o < 6 ? 2 : 3;
@@ -151,27 +151,18 @@ static void adapt(ref_expected *e, int64_t seen, int64_t size)
     e->uses = e->uses < 60 ? e->uses + 1 : 60;
 }
 
-static int64_t len(const int64_t *v)
-{
-    int64_t m = 0, sum = 0;
-    for (int i = 0; i < 3; i++) {
-        m = at_least(absolute(v[i]), m);
-        sum += absolute(v[i]);
-    }
-    return m + ref_shift(sum - m, 2) + ref_shift(sum - m, 3);
-}
-
 static void adapt_both(ref_residual_models *m, const ref_prediction *p,
                        const axis_state *a)
 {
-    int64_t f[3], dot = 0;
+    ref_vec f;
+    int64_t dot = 0;
     for (int k = 0; k < 3; k++)
         dot += a->d[k] * a->n[k];
     const int64_t h = dot / 16384;
     for (int k = 0; k < 3; k++)
-        f[k] = a->d[k] - h * a->n[k] / 16384;
+        f.c[k] = a->d[k] - h * a->n[k] / 16384;
     adapt(across_of(m, p), absolute(h), p->size);
-    adapt(along_of(m, p), len(f) * 181 / 256, p->size);
+    adapt(along_of(m, p), ref_len(f) * 181 / 256, p->size);
 }
 
 ref_vec ref_read_residual(ref *r, ref_prediction *p)
@@ -187,13 +178,15 @@ ref_vec ref_read_residual(ref *r, ref_prediction *p)
     for (int k = 0; k < 3; k++) {
         const int axis = a.axis[k];
         int64_t mean, square;
-        int scale;
         expect(&a, k, &mean, &square);
-        mean += p->position.c[axis];
-        const int64_t c = read_axis(r, m, mean, square, k, far, &scale);
+        const int scale = scale_of(square);
+        const ref_near at_axis = { &m->any[scale], &m->here[scale][k][far],
+                                   m->low[scale], &m->escape, scale,
+                                   mean + p->position.c[axis] };
+        const int64_t c = ref_read_near(r, &at_axis);
         ref_check(r, c >= 0 && c <= r->header.bounds[axis],
                   "6.5: a position out of bounds");
-        far = how_far(c, mean, scale);
+        far = ref_how_far(c, &at_axis);
         a.d[k] = 16 * c - p->position.c[axis];
         at.c[axis] = c;
     }

@@ -76,6 +76,14 @@
     X("6.6", corner_new)           \
     X("6.6", place)                \
     X("6.6", wedge_without_coarse) \
+    X("6.6", value_copied)         \
+    X("6.6", normal_at_boundary)   \
+    X("6.6", shape_0)              \
+    X("6.6", mirrored)             \
+    X("6.6", tangent)              \
+    X("6.6", tangent_0)            \
+    X("6.6", tangent_below)        \
+    X("6.6", value_from_sibling)   \
     X("6.6", value_from_parent)    \
     X("6.6", value_half)           \
     X("6.6", values_48)            \

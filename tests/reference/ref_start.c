@@ -35,16 +35,21 @@ static void load_expected(ref_expected *e, const int *table, int count,
         e[i].value = table[i] ? table[i] : fallback;
 }
 
+static void load_cell(ref_cell *c, int scale)
+{
+    const int *from = ref_RESIDUAL + 20 * scale;
+    load_models(c->zero, from, 3);
+    load_models(c->sign, from + 3, 3);
+    load_models(c->unary, from + 6, 14);
+}
+
 static void load_residual(ref_residual_models *m, int which)
 {
     load_expected(m->along[0][0], ref_ALONG + which * 135, 135, 900);
     load_expected(m->across[0], ref_ACROSS + which * 42, 42, 400);
     for (int scale = 0; scale < 60; scale++) {
-        const int *from = ref_RESIDUAL + 20 * scale;
         ref_cell *any = &m->any[scale];
-        load_models(any->zero, from, 3);
-        load_models(any->sign, from + 3, 3);
-        load_models(any->unary, from + 6, 14);
+        load_cell(any, scale);
         for (int k = 0; k < 3; k++)
             for (int far = 0; far < 4; far++)
                 m->here[scale][k][far] = *any;
@@ -67,14 +72,35 @@ static void start_wedges(ref_wedge_models *m)
 {
     ref_model_start(m->material, 3);
     ref_model_start(m->ordinary, 3);
-    ref_model_start(m->seam, 3);
-    ref_model_start(m->corner, 4);
+    ref_model_start(m->seam[0], 9);
+    ref_model_start(m->corner[0][0], 36);
     ref_model_start(m->choice, 2);
     ref_number_start(&m->pick);
-    for (int i = 0; i < REF_VALUES; i++)
-        for (int sure = 0; sure < 2; sure++)
-            ref_number_start(&m->value[i][sure]);
-    ref_model_start(m->value_sign[0], 2 * REF_VALUES);
+}
+
+static void start_attributes(ref *r)
+{
+    for (int i = 0; i < REF_ATTRIBUTES; i++) {
+        ref_channel_models *m = &r->channel_models[i];
+        for (int scale = 0; scale < 40; scale++)
+            load_cell(&m->any[scale], scale);
+        load_models(m->low[0], ref_LOW, 40 * 3);
+        ref_number_start(&m->escape);
+        ref_model_start(m->differs[0], 9);
+    }
+    for (int i = 0; i < REF_VALUES; i++) {
+        ref_value_models *m = &r->value_models[i];
+        for (int scale = 0; scale < 40; scale++)
+            load_cell(&m->here[scale], scale);
+        for (int class = 0; class < 5; class++) {
+            for (int k = 0; k < 32; k++)
+                m->by_spread[class][k].value = 64;
+            for (int k = 0; k < 5; k++)
+                m->by_far[class][k].value = 64;
+        }
+        for (int k = 0; k < 3; k++)
+            m->fit[k].w[0][0] = m->fit[k].start[0][0] = 32768;
+    }
 }
 
 static void start_join(ref_join_models *m)
@@ -95,6 +121,7 @@ void ref_models_start(ref *r)
     start_join(&r->join);
     start_base(&r->base_models);
     start_wedges(&r->wedge_models);
+    start_attributes(r);
     load_models(r->flag, ref_FLAG, 1680);
     load_weights(r->cut.shape[0][0], ref_SHAPE, 12, 4);
     load_weights(r->cut.reach[0], ref_REACH, 4, 4);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* SPEC 6.6: materials, wedges, values. */
+/* SPEC 6.6: materials and wedges. */
 #include "tests/reference/ref.h"
 
 /* ---- materials ---------------------------------------------------------- */
@@ -93,22 +93,37 @@ static void new_wedge(ref *r, uint32_t corner)
     ref_new_wedge(r, corner);
 }
 
+/* Of the vertex' wedges, from the highest number down. */
 static void read_place(ref *r, uint32_t corner)
 {
-    const uint64_t on = ref_read_number(&r->in, &r->wedge_models.pick);
-    ref_walk w = ref_walk_at(r, r->edge[corner].vertex);
+    uint64_t over = ref_read_number(&r->in, &r->wedge_models.pick);
     REF_SEEN(place);
-    ref_check(r, on < 4096, "6.6: place");
-    for (uint64_t i = 0; i < on; i++) {
-        ref_walk_on(r, &w);
-        ref_check(r, w.h != REF_NONE, "6.6: place");
+    ref_check(r, over < 4096, "6.6: place");
+    for (uint32_t w = r->wedge_count; w-- > 0;)
+        if (r->wedge[w].vertex == r->edge[corner].vertex && over-- == 0) {
+            r->edge[corner].wedge = w;
+            return;
+        }
+    ref_reject(r, "6.6: a place without wedge");
+}
+
+/* Of the edge of half-edge h, at its end x. */
+static int seam(const ref *r, uint32_t h, uint32_t x)
+{
+    if (h == REF_NONE || r->edge[h].twin == REF_NONE)
+        return 2;
+    const uint32_t twin = r->edge[h].twin;
+    uint32_t w[2] = { r->edge[h].wedge, r->edge[ref_next(twin)].wedge };
+    if (ref_end_of(r, h) == x) {
+        w[0] = r->edge[ref_next(h)].wedge;
+        w[1] = r->edge[twin].wedge;
     }
-    ref_check(r, r->edge[w.h].wedge != REF_NONE, "6.6: a place without wedge");
-    r->edge[corner].wedge = r->edge[w.h].wedge;
+    return w[0] == REF_NONE || w[1] == REF_NONE ? 2 : w[0] != w[1];
 }
 
 /* Returns whether the corner got a new wedge. */
-static bool read_corner(ref *r, uint32_t corner, uint32_t g, uint32_t s)
+static bool read_corner(ref *r, uint32_t corner, uint32_t g, uint32_t s, int E,
+                        int F)
 {
     ref_wedge_models *m = &r->wedge_models;
     if (g == REF_NONE) {
@@ -117,11 +132,11 @@ static bool read_corner(ref *r, uint32_t corner, uint32_t g, uint32_t s)
     }
     if (g != REF_NONE) {
         const int agree = s == REF_NONE ? 0 : g == s ? 1 : 2;
-        if (!ref_bit(&r->in, &m->corner[agree])) {
+        if (!ref_bit(&r->in, &m->corner[agree][E][F])) {
             r->edge[corner].wedge = g;
             return false;
         }
-        if (agree == 2 && !ref_bit(&r->in, &m->corner[3])) {
+        if (agree == 2 && !ref_bit(&r->in, &m->corner[3][E][F])) {
             REF_SEEN(corner_second);
             r->edge[corner].wedge = s;
             return false;
@@ -146,7 +161,7 @@ void ref_read_base_wedges(ref *r)
             if (before == REF_NONE)
                 new_wedge(r, w.h);
             else
-                read_corner(r, w.h, before, REF_NONE);
+                read_corner(r, w.h, before, REF_NONE, 2, 2);
             before = r->edge[w.h].wedge;
         }
     }
@@ -156,6 +171,7 @@ void ref_read_base_wedges(ref *r)
 
 typedef struct other {
     uint32_t corner, guess[2];
+    uint32_t e, f; /* edges at u and at v, or NONE */
 } other;
 
 typedef struct change {
@@ -176,9 +192,10 @@ static uint32_t next_or_none(uint32_t h)
     return h == REF_NONE ? h : ref_next(h);
 }
 
-static void add_other(change *c, uint32_t corner, uint32_t g, uint32_t s)
+static void add_other(change *c, uint32_t corner, uint32_t g, uint32_t s,
+                      uint32_t e, uint32_t f)
 {
-    c->other[c->others++] = (other){ corner, { g, s } };
+    c->other[c->others++] = (other){ corner, { g, s }, e, f };
 }
 
 /* The corners of u, whose wedges of before go to coarse[]. */
@@ -221,9 +238,9 @@ static void list_lones(const ref *r, change *c, const ref_fresh *fresh)
         const uint32_t at_v = ref_start_of(r, f) == fresh->u ? f + 1 : f;
         const uint32_t w = ref_start_of(r, f + 2);
         add_other(c, at_v, wedge_or_none(r, older_of_both(r, fresh)),
-                  REF_NONE);
+                  REF_NONE, REF_NONE, REF_NONE);
         add_other(c, f + 2, wedge_or_none(r, older_corner(r, w, fresh)),
-                  REF_NONE);
+                  REF_NONE, REF_NONE, REF_NONE);
     }
 }
 
@@ -247,14 +264,14 @@ static void list_others(const ref *r, change *c, const ref_fresh *fresh, int i)
         v_at_a = coarse_of_part(r, fresh, i);
     }
     if (a != REF_NONE) {
-        add_other(c, a, v_at_a, v_at_b);
+        add_other(c, a, v_at_a, v_at_b, a + 1, REF_NONE);
         add_other(c, a + 1, wedge_or_none(r, next_or_none(au)),
-                  wedge_or_none(r, va));
+                  wedge_or_none(r, va), a + 1, a);
     }
     if (b != REF_NONE) {
-        add_other(c, b, v_at_b, v_at_a);
+        add_other(c, b, v_at_b, v_at_a, b + 1, REF_NONE);
         add_other(c, b + 2, wedge_or_none(r, ub),
-                  wedge_or_none(r, next_or_none(bv)));
+                  wedge_or_none(r, next_or_none(bv)), b + 1, b + 2);
     }
 }
 
@@ -300,7 +317,9 @@ static void read_child_corners(ref *r, const change *c)
         const uint32_t here = c->coarse[i], before = c->coarse[i - 1];
         const int s =
             here == REF_NONE || before == REF_NONE ? 2 : here != before;
-        if (!ref_bit(&r->in, &m->seam[s])) {
+        const int x =
+            seam(r, c->corner[i], ref_end_of(r, c->corner[i]));
+        if (!ref_bit(&r->in, &m->seam[s][x])) {
             r->edge[c->corner[i]].wedge = r->edge[c->corner[i - 1]].wedge;
         } else if (ref_bit(&r->in, &m->choice[1])) {
             REF_SEEN(child_place);
@@ -324,11 +343,13 @@ static uint32_t first_wedge_of(const ref *r, uint32_t v, uint32_t but)
     return REF_NONE;
 }
 
-static void read_others(ref *r, const change *c)
+static void read_others(ref *r, const change *c, uint32_t u)
 {
+    const uint32_t v = r->vertex[u].parent;
     for (int i = 0; i < c->others; i++) {
         const other *o = &c->other[i];
-        if (!read_corner(r, o->corner, o->guess[0], o->guess[1]))
+        if (!read_corner(r, o->corner, o->guess[0], o->guess[1],
+                         seam(r, o->e, u), seam(r, o->f, v)))
             continue;
         const uint32_t made = r->edge[o->corner].wedge;
         uint32_t like = only_guess(o);
@@ -378,76 +399,6 @@ void ref_read_split_wedges(ref *r, const ref_fresh *fresh)
         REF_SEEN(not_ordinary);
         read_child_corners(r, &c);
         set_parents(r, &c);
-        read_others(r, &c);
+        read_others(r, &c, fresh->u);
     }
-}
-
-/* ---- values ------------------------------------------------------------- */
-
-typedef struct guess {
-    int64_t sum[REF_VALUES];
-    int count;
-} guess;
-
-static void look_at(const ref *r, guess *g, uint32_t w, uint32_t seen)
-{
-    if (seen >= w)
-        return;
-    g->count++;
-    for (int i = 0; i < r->header.value_count; i++)
-        g->sum[i] += r->wedge[seen].value[i];
-}
-
-static guess look_around(const ref *r, uint32_t w)
-{
-    guess g = { 0 };
-    const uint32_t first = r->wedge[w].corner;
-    uint32_t h = first;
-    do {
-        look_at(r, &g, w, r->edge[ref_next(h)].wedge);
-        look_at(r, &g, w, r->edge[ref_prev(h)].wedge);
-        h = ref_left(r, h);
-        if (g.count >= 48)
-            REF_SEEN(values_48);
-    } while (h != REF_NONE && h != first && r->edge[h].wedge == w &&
-             g.count < 48);
-    return g;
-}
-
-static int64_t guess_value(const ref *r, const guess *g, uint32_t w, int i)
-{
-    const uint32_t from = r->wedge[w].from;
-    if (g->count > 0)
-        return (g->sum[i] + g->count / 2) / g->count;
-    if (from < w) {
-        REF_SEEN(value_from_parent);
-        return r->wedge[from].value[i];
-    }
-    REF_SEEN(value_half);
-    return ((1 << r->header.value_bits[i]) - 1) / 2;
-}
-
-static void read_values_of(ref *r, uint32_t w)
-{
-    ref_wedge_models *m = &r->wedge_models;
-    const guess g = look_around(r, w);
-    const int sure = g.count > 2;
-    for (int i = 0; i < r->header.value_count; i++) {
-        int64_t value = guess_value(r, &g, w, i);
-        const int64_t size =
-            (int64_t)ref_read_number(&r->in, &m->value[i][sure]);
-        const bool minus =
-            size > 0 && ref_bit(&r->in, &m->value_sign[i][sure]);
-        value += minus ? -size : size;
-        ref_check(r, value >= 0 && value < 1 << r->header.value_bits[i],
-                  "6.6: a value out of range");
-        r->wedge[w].value[i] = (uint16_t)value;
-    }
-}
-
-void ref_read_values(ref *r)
-{
-    const uint32_t first = r->has_base ? r->block_wedge : 0;
-    for (uint32_t w = first; w < r->wedge_count; w++)
-        read_values_of(r, w);
 }

@@ -96,6 +96,20 @@ glb_holds_the_scene() {
         ! "$PMESH" verify "$dir/cut.glb"
 }
 
+levels_make_chains() {
+    "$PMESH" extract -q "$dir/a.pmesh" --lods 100%,50%,0.2 -o "$dir/lods.glb" &&
+        python3 $here/lods.py "$dir/full.glb" "$dir/lods.glb" 3
+}
+
+packs_by_meshopt() {
+    "$PMESH" extract -q "$dir/a.pmesh" --meshopt -o "$dir/packed.glb" &&
+        "$PMESH" compare --json --samples 1000 "$dir/full.glb" \
+            "$dir/packed.glb" >"$dir/said" &&
+        grep -q '"max": 0,' "$dir/said" &&
+        "$PMESH" extract -q "$dir/a.pmesh" --meshopt --lods 1,0.5 \
+            -o "$dir/packed.gltf"
+}
+
 merges_into_other_formats() {
     "$PMESH" extract -q "$dir/a.pmesh" -o "$dir/full.obj" &&
         "$PMESH" compare "$model" "$dir/full.obj" --samples 2000 &&
@@ -105,7 +119,8 @@ merges_into_other_formats() {
 is_valid() {
     # shellcheck disable=SC2086 # words on purpose
     $VALIDATE "$model" "$dir/full.glb" "$dir/full.gltf" "$dir"/lod*.glb \
-        "$dir"/cut[0-9]*.glb "$dir/progressive.glb"
+        "$dir"/cut[0-9]*.glb "$dir/progressive.glb" "$dir/packed.glb" \
+        "$dir/packed.gltf" "$dir/lods.glb"
 }
 
 scene() {
@@ -121,6 +136,8 @@ scene() {
     [ "$name" = morphs.glb ] || try "$name: first mesh comes within 16 KiB" \
         first_mesh_comes_within_16_kib
     try "$name: a GLB holds the scene" glb_holds_the_scene
+    try "$name: levels make chains" levels_make_chains
+    try "$name: packs by meshopt" packs_by_meshopt
     try "$name: merges into other formats" merges_into_other_formats
     [ -z "${VALIDATE-}" ] || try "$name: is valid" is_valid
 }

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+/* scene_writer.h - the state of scene_write(), private to its two sources:
+ * scene_write.cpp and, for chains of levels, scene_lods.cpp. */
+#ifndef SCENE_WRITER_H
+#define SCENE_WRITER_H
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "tools/gltf_document.h"
+#include "tools/scene_geometry.h"
+#include "tools/scene_write.h"
+
+class scene_writer {
+public:
+    scene_writer(pmesh_scene *from, scene_style how, asset *warn)
+        : scene(from), style(how), notes(warn)
+    {
+    }
+    void write(asset_bytes *out);
+
+private:
+    pmesh_scene *scene;
+    scene_style style;
+    asset *notes;
+    gltf_document doc;
+    gltf_bytes bin;
+    std::vector<size_t> free_accessors, free_views; /* the last is next */
+    std::map<uint32_t, std::unique_ptr<scene_geometry>> meshes;
+    size_t unpacked = 0; /* bytes of the buffer that packed views stand for */
+    std::vector<std::vector<size_t>> chains; /* by mesh: it at each level */
+    std::vector<std::vector<double>> coverages;
+    std::vector<size_t> resource_start; /* in bin, or in the stream */
+    std::vector<bool> in_stream;        /* by resource */
+    std::vector<size_t> image_views;    /* that show one of these */
+
+    void read_document(asset_bytes *plain);
+    void open();
+    std::vector<size_t> free_list(const char *name);
+    size_t place(const char *list, std::vector<size_t> &free,
+                 gltf_document value);
+    void align(size_t to);
+    size_t add(const scene_array &data, int target, bool bounds);
+    scene_form form(const gltf_document &record) const;
+    scene_geometry &geometry(const gltf_document &record);
+    gltf_document view_of(const scene_array &data, int target);
+    void primitive(gltf_document &p);
+    bool fill(gltf_document &mesh);
+    void lods();
+    void add_level(size_t level, const gltf_document &originals);
+    void chain_node(size_t node, const std::vector<size_t> &chain);
+    void use_extension(const char *name, bool required);
+    void primitives();
+    void drop_animations();
+    void missing_images(const std::vector<bool> &missing);
+    void resources();
+    void move_views();
+    void drop_marks();
+    void add_stream();
+    void put_glb(const std::string &json, asset_bytes *out) const;
+};
+
+#endif
