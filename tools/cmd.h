@@ -23,6 +23,7 @@ enum {
 #define CMD_FORMATS "obj|ply|stl|off|gltf|glb|drc"
 
 int cmd_bake(int argc, char **argv);
+int cmd_batch(int argc, char **argv);
 int cmd_extract(int argc, char **argv);
 int cmd_info(int argc, char **argv);
 int cmd_verify(int argc, char **argv);

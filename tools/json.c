@@ -126,6 +126,12 @@ void json_float(json *j, const char *key, float value)
     fputs(digits, j->out);
 }
 
+void json_raw(json *j, const char *key, const char *value)
+{
+    lead_in(j, key);
+    fputs(value, j->out);
+}
+
 void json_bool(json *j, const char *key, bool value)
 {
     lead_in(j, key);

@@ -43,6 +43,8 @@ void json_text(json *j, const char *key, const char *value);
 void json_count(json *j, const char *key, uint64_t value);
 void json_number(json *j, const char *key, double value);
 void json_float(json *j, const char *key, float value);
+/* `value` is JSON already. */
+void json_raw(json *j, const char *key, const char *value);
 void json_bool(json *j, const char *key, bool value);
 
 #endif

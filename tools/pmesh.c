@@ -23,6 +23,7 @@ typedef struct subcommand {
 
 static const subcommand subcommands[] = {
     { "bake", cmd_bake, "turn a triangle mesh into a .pmesh file" },
+    { "batch", cmd_batch, "bake many files, several at a time" },
     { "extract", cmd_extract, "write a mesh of any size out of a .pmesh" },
     { "simplify", cmd_simplify, "write a mesh file with fewer faces" },
     { "info", cmd_info, "print what the header of a .pmesh says" },

@@ -67,9 +67,16 @@ int progress_update(void *user, const char *stage, double done)
     return 0;
 }
 
-void progress_end(progress *p)
+void progress_pause(progress *p)
 {
     if (p->bar)
         fputs("\r\033[K", stderr);
+    p->shown = -1;
+    p->next = 0;
+}
+
+void progress_end(progress *p)
+{
+    progress_pause(p);
     p->bar = p->lines = false;
 }

@@ -25,6 +25,9 @@ void progress_begin(progress *p, progress_mode mode);
 /* A pmesh_progress callback; `user` is the progress. Never cancels. */
 int progress_update(void *user, const char *stage, double done);
 
+/* Clears the bar for a line of text; the next update draws it again. */
+void progress_pause(progress *p);
+
 /* Clears the bar: call before any other output. */
 void progress_end(progress *p);
 
