@@ -24,7 +24,7 @@ typedef struct options {
     uint64_t bytes;
     double ratio, error; /* negative: not given */
     const char *lods;
-    bool meshopt, inflate, strict, salvage, no_attributes, quiet;
+    bool meshopt, draco, inflate, strict, salvage, no_attributes, quiet;
 } options;
 
 static const args_option option_table[] = {
@@ -56,6 +56,8 @@ static const args_option option_table[] = {
       .offset = offsetof(options, meshopt),
       .help = "of a scene, into .glb or .gltf, geometry packed by\n"
               "EXT_meshopt_compression" },
+    { .name = "draco", .kind = ARGS_FLAG, .offset = offsetof(options, draco),
+      .help = "the same by KHR_draco_mesh_compression" },
     { .name = "inflate", .kind = ARGS_FLAG,
       .offset = offsetof(options, inflate),
       .help = "swell coarse levels to the full mesh's volume: closer\n"
@@ -237,14 +239,15 @@ static int extract_from(const extraction *job, const file_data *data)
                                  .ratio = o->ratio, .error = o->error,
                                  .mesh = o->mesh, .inflate = o->inflate,
                                  .lods = o->lods, .meshopt = o->meshopt,
+                                 .draco = o->draco,
                                  .strict = o->strict,
                                  .salvage = o->salvage,
                                  .no_attributes = o->no_attributes,
                                  .quiet = o->quiet },
                              data);
-    if (o->lods || o->meshopt) {
+    if (o->lods || o->meshopt || o->draco) {
         report_error(file_input_name(job->input), NULL, "is a single mesh; "
-                     "--lods and --meshopt are for scenes");
+                     "--lods, --meshopt and --draco are for scenes");
         return CMD_USAGE;
     }
     if (o->mesh != EXTRACT_ALL_MESHES && o->mesh != 0) {
@@ -290,6 +293,8 @@ static int plan(const options *o, int count, char **operands, extraction *job)
                                                      : "takes one file");
     if (!o->output)
         return usage("no output is named (-o OUT)");
+    if (o->meshopt && o->draco)
+        return usage("takes one of --meshopt and --draco");
     job->options = o;
     job->input = o->input ? o->input : operands[0];
     job->output = o->output;

@@ -157,12 +157,13 @@ static bool encode(job *j, const pmesh_decoder *one, asset_bytes *out,
                            (scene_style){ .glb = r->format == ASSET_GLB,
                                           .inflate = r->inflate,
                                           .meshopt = r->meshopt,
+                                          .draco = r->draco,
                                           .lod_faces = j->lod_faces,
                                           .lod_count = j->lod_count },
                            out, &j->notes, error);
-    if (r->lods || r->meshopt)
-        return asset_fail(error, "", "--lods and --meshopt need a whole scene "
-                          "in a .glb or .gltf");
+    if (r->lods || r->meshopt || r->draco)
+        return asset_fail(error, "", "--lods, --meshopt and --draco need a "
+                          "whole scene in a .glb or .gltf");
     if (!(one ? asset_from_decoder(one, &mesh, error)
               : scene_file_merge(&j->file, r->inflate, &mesh, error)))
         return false;

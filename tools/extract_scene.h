@@ -21,7 +21,7 @@ typedef struct extract_request {
     double ratio, error; /* negative: not given */
     uint32_t mesh;       /* one only, in its own space, or ALL_MESHES */
     const char *lods;    /* ratios of a chain of levels, by commas; or NULL */
-    bool meshopt, inflate, strict, salvage, no_attributes, quiet;
+    bool meshopt, draco, inflate, strict, salvage, no_attributes, quiet;
 } extract_request;
 
 /* Returns an exit code and has said why unless it is CMD_DONE. */

@@ -103,9 +103,10 @@ void tidy_tangents(std::vector<float> &values)
 }
 
 /* The sets of skin weights of a vertex: their sum is 1, and a joint without
- * weight is joint 0, as the specification wants it. */
+ * weight is joint 0, as the specification wants it. If `whole`, they are
+ * multiples of 1 / 65535. */
 void tidy_skin(std::vector<std::vector<float> *> &joints,
-               std::vector<std::vector<float> *> &weights)
+               std::vector<std::vector<float> *> &weights, bool whole)
 {
     const size_t count = weights.empty() ? 0 : weights[0]->size() / 4;
     for (size_t i = 0; i < count; i++) {
@@ -121,7 +122,9 @@ void tidy_skin(std::vector<std::vector<float> *> &joints,
         for (auto *set : weights)
             for (size_t k = 0; k < 4; k++) {
                 float &w = (*set)[4 * i + k];
-                w = static_cast<float>(std::fmax(w, 0.0f) / sum);
+                const double share = std::fmax(w, 0.0f) / sum;
+                w = static_cast<float>(
+                    whole ? std::floor(share * 65535 + 0.5) / 65535 : share);
                 rest -= w;
                 largest = !largest || w > *largest ? &w : largest;
             }
@@ -134,12 +137,15 @@ void tidy_skin(std::vector<std::vector<float> *> &joints,
 }
 
 /* The type to store by; floats where glTF allows no other without extension. */
-int stored_type(const std::string &semantic, const scene_form &form)
+int stored_type(const std::string &semantic, const scene_form &form,
+                bool whole_weights)
 {
     const int type = form.component_type;
     const bool small = type == GLTF_U8 || type == GLTF_U16;
     if (starts(semantic, "JOINTS_"))
         return type == GLTF_U8 ? GLTF_U8 : GLTF_U16;
+    if (starts(semantic, "WEIGHTS_") && whole_weights)
+        return GLTF_U16;
     if (starts(semantic, "COLOR_") || starts(semantic, "TEXCOORD_"))
         return small && form.normalised ? type : GLTF_F32;
     if (semantic[0] == '_')
@@ -149,8 +155,9 @@ int stored_type(const std::string &semantic, const scene_form &form)
 
 } // namespace
 
-scene_geometry::scene_geometry(const pmesh_decoder *from, bool inflate)
-    : decoder(from)
+scene_geometry::scene_geometry(const pmesh_decoder *from, bool inflate,
+                               bool whole)
+    : decoder(from), whole_weights(whole)
 {
     if (!decoder || pmesh_decoder_header(decoder, &header) != PMESH_OK ||
         pmesh_decoder_mesh(decoder, &view) != PMESH_OK)
@@ -164,6 +171,7 @@ scene_geometry::scene_geometry(const pmesh_decoder *from, bool inflate)
     } else {
         pmesh_decoder_copy_positions(decoder, xyz.data(), 0);
     }
+    find_grid(inflate);
     channels.resize(header.attribute_count);
     number.assign(view.vertex_count, none);
 
@@ -179,6 +187,36 @@ scene_geometry::scene_geometry(const pmesh_decoder *from, bool inflate)
     order.resize(view.face_count);
     for (uint32_t f = 0; f < view.face_count; f++)
         order[first[material(f) + 1]++] = f;
+}
+
+/*
+ * Of positions: the file's own, on which they stand already, so that primitives
+ * that meet still do. Inflated ones leave it: a finer one over them all.
+ */
+void scene_geometry::find_grid(bool inflated)
+{
+    if (header.exact_bytes > 0)
+        return;
+    grid.bits = header.grid.bits;
+    grid.range = static_cast<float>(header.grid.step *
+                                    ((1u << header.grid.bits) - 1));
+    for (size_t k = 0; k < 3; k++)
+        grid.origin[k] = static_cast<float>(header.grid.origin[k]);
+    if (!inflated)
+        return;
+    float low[3], high[3];
+    std::copy(&xyz[0], &xyz[3], low);
+    std::copy(&xyz[0], &xyz[3], high);
+    for (size_t i = 0; i < xyz.size(); i++) {
+        low[i % 3] = std::min(low[i % 3], xyz[i]);
+        high[i % 3] = std::max(high[i % 3], xyz[i]);
+    }
+    grid.bits += 2;
+    grid.range = 0;
+    for (size_t k = 0; k < 3; k++) {
+        grid.origin[k] = low[k];
+        grid.range = std::max(grid.range, high[k] - low[k]);
+    }
 }
 
 void scene_geometry::choose(uint32_t material)
@@ -225,7 +263,9 @@ scene_array scene_geometry::positions() const
     for (const uint32_t wedge : wedges)
         values.insert(values.end(), &xyz[3 * static_cast<size_t>(wedge)],
                       &xyz[3 * static_cast<size_t>(wedge)] + 3);
-    return pack(values, 3, GLTF_F32, false);
+    scene_array out = pack(values, 3, GLTF_F32, false);
+    out.grid = grid;
+    return out;
 }
 
 const std::vector<float> &scene_geometry::channel(int at)
@@ -275,11 +315,16 @@ scene_geometry::attributes(const std::map<std::string, scene_form> &forms)
         if (starts(semantic, "WEIGHTS_") && form.components == 4)
             weights.push_back(&v);
     }
-    tidy_skin(joints, weights);
+    tidy_skin(joints, weights, whole_weights);
     for (const auto &[semantic, form] : forms) {
-        const int type = stored_type(semantic, form);
-        out[semantic] = pack(values[semantic], form.components, type,
-                             type != GLTF_F32 && form.normalised);
+        const int type = stored_type(semantic, form, whole_weights);
+        scene_array &to = out[semantic] =
+            pack(values[semantic], form.components, type,
+                 type != GLTF_F32 &&
+                     (form.normalised || starts(semantic, "WEIGHTS_")));
+        /* One bit more than the file has: a quarter of its step is lost. */
+        if (!form.exact)
+            to.grid.bits = header.attributes[form.channel].bits + 1u;
     }
     return out;
 }

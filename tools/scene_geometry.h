@@ -21,6 +21,13 @@ struct scene_form {
     bool normalised, exact;
 };
 
+/* How floats may be quantised: to `bits` over `range` from the origin on, or
+ * over what they span if the range is 0; not at all if `bits` is 0. */
+struct scene_grid {
+    unsigned bits = 0;
+    float origin[3] = {}, range = 0;
+};
+
 /* Data of one accessor; rows are `stride` bytes apart. */
 struct scene_array {
     std::vector<uint8_t> bytes;
@@ -29,12 +36,14 @@ struct scene_array {
     int component_type = 0;
     bool normalised = false;
     std::vector<float> low, high; /* of floats */
+    scene_grid grid;
 };
 
 /* A mesh at the level it shows now. */
 class scene_geometry {
 public:
-    scene_geometry(const pmesh_decoder *decoder, bool inflate);
+    /* With `whole`, skin weights are integers whose sum is 1 exactly. */
+    scene_geometry(const pmesh_decoder *decoder, bool inflate, bool whole);
 
     /* Chooses the faces of one material; their vertices are numbered in order
      * of appearance. A material without faces at this level gets one of no
@@ -56,12 +65,15 @@ private:
     const pmesh_decoder *decoder;
     pmesh_header header;
     pmesh_view view;
+    bool whole_weights;
+    scene_grid grid;
     std::vector<float> xyz;
     std::vector<std::vector<float>> channels; /* filled when needed */
     std::vector<uint32_t> order, first;       /* faces by material */
     std::vector<uint32_t> number;             /* wedge -> vertex */
     std::vector<uint32_t> wedges, corners;    /* of the chosen faces */
 
+    void find_grid(bool inflated);
     const std::vector<float> &channel(int number);
     std::vector<float> gather(const scene_form &form);
 };

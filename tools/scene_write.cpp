@@ -149,23 +149,32 @@ gltf_document scene_writer::view_of(const scene_array &data, int target)
     return view;
 }
 
-/* The number of the data's accessor. */
-size_t scene_writer::add(const scene_array &data, int target, bool bounds)
+/* An accessor of `count` elements like the data, without a view. */
+gltf_document scene_writer::accessor_of(const scene_array &data, size_t count,
+                                        bool bounds)
 {
     static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
     gltf_document accessor;
 
-    accessor["bufferView"] =
-        place("bufferViews", free_views, view_of(data, target));
     accessor["componentType"] = data.component_type;
     if (data.normalised)
         accessor["normalized"] = true;
-    accessor["count"] = data.count;
+    accessor["count"] = count;
     accessor["type"] = types[data.components - 1];
     if (bounds) {
         accessor["min"] = numbers_of(data.low);
         accessor["max"] = numbers_of(data.high);
     }
+    return accessor;
+}
+
+/* The number of the data's accessor. */
+size_t scene_writer::add(const scene_array &data, int target, bool bounds)
+{
+    gltf_document accessor = {
+        { "bufferView", place("bufferViews", free_views, view_of(data, target)) }
+    };
+    accessor.update(accessor_of(data, data.count, bounds));
     return place("accessors", free_accessors, std::move(accessor));
 }
 
@@ -189,7 +198,7 @@ scene_geometry &scene_writer::geometry(const gltf_document &record)
     auto &mesh = meshes[number];
     if (!mesh)
         mesh = std::make_unique<scene_geometry>(
-            pmesh_scene_mesh(scene, number), style.inflate);
+            pmesh_scene_mesh(scene, number), style.inflate, style.draco);
     return *mesh;
 }
 
@@ -203,13 +212,18 @@ void scene_writer::primitive(gltf_document &p)
     for (const auto &[name, one] : record.at("attributes").items())
         if (name != "POSITION")
             forms[name] = form(one);
-    gltf_document attributes = {
-        { "POSITION", add(mesh.positions(), TARGET_VERTICES, true) }
-    };
-    for (const auto &[name, data] : mesh.attributes(forms))
-        attributes[name] = add(data, TARGET_VERTICES, false);
-    p["attributes"] = std::move(attributes);
-    p["indices"] = add(mesh.indices(), TARGET_INDICES, false);
+    if (style.draco) {
+        pack_draco(p, mesh.positions(), mesh.attributes(forms), mesh.indices(),
+                   record.contains("targets"));
+    } else {
+        gltf_document attributes = {
+            { "POSITION", add(mesh.positions(), TARGET_VERTICES, true) }
+        };
+        for (const auto &[name, data] : mesh.attributes(forms))
+            attributes[name] = add(data, TARGET_VERTICES, false);
+        p["attributes"] = std::move(attributes);
+        p["indices"] = add(mesh.indices(), TARGET_INDICES, false);
+    }
     for (const gltf_document &target :
          record.value("targets", gltf_document::array())) {
         gltf_document to = gltf_document::object();
@@ -460,6 +474,8 @@ void scene_writer::write(asset_bytes *out)
               { "extensions", { { GLTF_MESHOPT, { { "fallback", true } } } } } });
         use_extension(GLTF_MESHOPT, true);
     }
+    if (uses_draco)
+        use_extension(GLTF_DRACO, true);
     if (style.glb) {
         put_glb(doc.dump(), out);
     } else {

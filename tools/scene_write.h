@@ -19,6 +19,7 @@ typedef struct scene_style {
     bool glb;     /* else .gltf, with a data URI */
     bool inflate; /* coarse levels, see pmesh_decoder_copy_inflated() */
     bool meshopt; /* geometry by EXT_meshopt_compression */
+    bool draco;   /* or by KHR_draco_mesh_compression */
     const uint64_t *lod_faces; /* budgets of a chain of levels, falling */
     size_t lod_count;          /* 0: the level that is visible now */
     /* NULL, or the scene's own file: it goes last into the buffer, and images

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* scene_writer.h - the state of scene_write(), private to its two sources:
- * scene_write.cpp and, for chains of levels, scene_lods.cpp. */
+/* scene_writer.h - the state of scene_write(), private to its sources:
+ * scene_write.cpp, for chains of levels scene_lods.cpp, and scene_draco.cpp. */
 #ifndef SCENE_WRITER_H
 #define SCENE_WRITER_H
 
@@ -11,6 +11,8 @@
 #include "tools/gltf_document.h"
 #include "tools/scene_geometry.h"
 #include "tools/scene_write.h"
+
+#define GLTF_DRACO "KHR_draco_mesh_compression"
 
 class scene_writer {
 public:
@@ -28,6 +30,7 @@ private:
     gltf_bytes bin;
     std::vector<size_t> free_accessors, free_views; /* the last is next */
     std::map<uint32_t, std::unique_ptr<scene_geometry>> meshes;
+    bool uses_draco = false;
     size_t unpacked = 0; /* bytes of the buffer that packed views stand for */
     std::vector<std::vector<size_t>> chains; /* by mesh: it at each level */
     std::vector<std::vector<double>> coverages;
@@ -41,7 +44,13 @@ private:
     size_t place(const char *list, std::vector<size_t> &free,
                  gltf_document value);
     void align(size_t to);
+    static gltf_document accessor_of(const scene_array &data, size_t count,
+                                     bool bounds);
     size_t add(const scene_array &data, int target, bool bounds);
+    size_t add_described(const scene_array &data, size_t count, bool bounds);
+    void pack_draco(gltf_document &p, scene_array positions,
+                    const std::map<std::string, scene_array> &others,
+                    scene_array indices, bool ordered);
     scene_form form(const gltf_document &record) const;
     scene_geometry &geometry(const gltf_document &record);
     gltf_document view_of(const scene_array &data, int target);

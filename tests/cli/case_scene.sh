@@ -39,6 +39,11 @@ for lods in '' 50%,100% 0% 120% 1,x 1,; do
 done
 check 'levels of a mesh' 2 extract one.pmesh --lods 100%,50% -o x.glb
 check 'levels into another format' 1 extract two.pmesh --lods 1 -o x.obj
+check 'Draco of a mesh' 2 extract one.pmesh --draco -o x.glb
+check 'Draco and meshopt' 2 extract two.pmesh --draco --meshopt -o x.glb
+check 'Draco into another format' 1 extract two.pmesh --draco -o x.obj
+check 'Draco' 0 extract two.pmesh --draco -q -o packed.glb
+check 'it is the scene' 0 compare two.gltf packed.glb
 check 'a GLB with a scene' 0 bake two.gltf -q -o tail.glb
 ok 'info sees the scene' "$PMESH" info --json tail.glb
 check 'verify it' 0 verify tail.glb
