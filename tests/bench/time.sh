@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Usage: tests/bench/time.sh
-# Time and memory of bake, extract and simplify, for each model and for a generated mesh
-# of BIG triangles (2000000; 0: none). Writes time.csv and prints it.
+# Time and memory of bake and extract, for each model and for a generated mesh
+# of BIG triangles (2000000; 0: none), and of simplify where the papers give
+# times. Writes time.csv and prints it.
 . tests/bench/common.sh
 need /usr/bin/time "make bench-deps"
 dir=$OUT/time
