@@ -31,6 +31,19 @@ ok 'nodes have their names' grep -q '"near"' back.gltf
 ok 'the report counts faces' out '2 of 2 faces, 2 meshes'
 check 'to another format' 0 extract two.pmesh -q -o back.obj
 ok 'both meshes are there' test "$(faces back.obj)" = 2
+ok 'it names a library' grep -q '^mtllib back.mtl$' back.obj
+ok 'which has the material' grep -q '^newmtl unused$' back.mtl
+rm back.mtl
+check 'to standard output' 0 extract two.pmesh -q --format obj -o -
+ok 'there is no library' test ! -e back.mtl
+mkdir held.mtl
+check 'where a library cannot be' 1 extract two.pmesh -q -o held.obj
+ok 'the message names it' err 'held.mtl: '
+ok 'there is no mesh without it' test ! -e held.obj
+sed 's/{"name":"unused"}/{"name":"a"},{"name":"a"},{}/' two.gltf >names.gltf
+"$PMESH" bake names.gltf -q -o names.pmesh
+check 'materials of one name' 0 extract names.pmesh -q -o names.obj
+ok 'get several' test "$(grep newmtl names.mtl | sort -u | wc -l)" = 3
 check 'one mesh' 0 extract two.pmesh -q --mesh 1 -o back.obj
 ok 'one mesh is one' test "$(faces back.obj)" = 1
 check 'levels' 0 extract two.pmesh -q --lods 100%,50% -o x.glb
