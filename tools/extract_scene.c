@@ -146,7 +146,7 @@ static bool merge(job *j, asset_bytes *out, asset *mesh, asset_error *error)
                           library ? &j->library.content : NULL, mesh, error))
         return false;
     if (j->library.content.missing)
-        asset_warn(&j->notes, "some images have not arrived, and the .mtl does "
+        asset_warn(&j->notes, "some images are not there, and the .mtl does "
                    "without them");
     if (obj)
         turn_texcoords(mesh);

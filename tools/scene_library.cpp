@@ -80,6 +80,17 @@ std::string name_of(const gltf_document &material, size_t number)
     return text.empty() ? "material_" + std::to_string(number) : text;
 }
 
+/* Of an image that is a file; false if no line can name it. */
+bool put_path(asset_bytes *out, const char *word, const std::string &uri)
+{
+    std::vector<char> path(uri.size() + 1);
+
+    if (!gltf_uri_path(uri.c_str(), uri.size(), path.data()))
+        return false;
+    asset_printf(out, "%s %s\n", word, path.data());
+    return true;
+}
+
 } // namespace
 
 /* The image of a texture, or SIZE_MAX; extensions name others of theirs. */
@@ -137,10 +148,14 @@ void scene_writer::library_map(const char *word, const gltf_document &slot)
     scene_library *to = style.library;
     const size_t image = image_of(slot);
     const char *ending = image == SIZE_MAX ? nullptr : library_image(image);
+    const gltf_document &uri =
+        image == SIZE_MAX ? nothing : member(doc["images"].at(image), "uri");
 
     if (ending)
         asset_printf(&to->mtl, "%s %s-%zu.%s\n", word, to->stem, image,
                      ending);
+    else if (uri.is_string() && put_path(&to->mtl, word, uri))
+        return;
     else if (image != SIZE_MAX)
         to->missing = true;
 }

@@ -29,7 +29,7 @@ typedef struct scene_library {
     asset_bytes mtl;
     scene_image *images;
     size_t image_count;
-    bool missing; /* some image has not arrived */
+    bool missing; /* some image is not there */
 } scene_library;
 
 void scene_library_free(scene_library *library);
