@@ -7,6 +7,7 @@
 #include "decoder/dec_internal.h"
 #include "format/alloc.h"
 #include "format/inflate.h"
+#include "format/quantize.h"
 
 #define DEFAULT_MEMORY ((uint64_t)4 << 30)
 
@@ -58,6 +59,11 @@ pmesh_decode_error pmesh_decoder_error(const pmesh_decoder *dec)
     return dec->frame.error;
 }
 
+static float measured(const pmesh_decoder *dec, uint32_t units)
+{
+    return pmesh_narrow(dec->header.grid.step * units / PMESH_MEASURE_UNIT);
+}
+
 static pmesh_level level_of(const pmesh_decoder *dec, uint32_t i)
 {
     const pmesh_level_entry *e = &dec->header.levels[i];
@@ -67,7 +73,9 @@ static pmesh_level level_of(const pmesh_decoder *dec, uint32_t i)
                           .vertices = e->wedges,
                           .error = e->error,
                           .inflation =
-                              (float)e->inflation / PMESH_INFLATE_ONE };
+                              (float)e->inflation / PMESH_INFLATE_ONE,
+                          .rms = measured(dec, e->rms),
+                          .furthest = measured(dec, e->most) };
 }
 
 pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
@@ -95,6 +103,7 @@ pmesh_status pmesh_decoder_header(const pmesh_decoder *dec, pmesh_header *out)
         .level_count = h->level_count,
         .exact_bytes = h->exact_size,
         .memory = dec->block_size,
+        .measured = h->measured,
     };
     memcpy(out->bounds, h->bounds, sizeof out->bounds);
     memcpy(out->attributes, h->attributes, sizeof out->attributes);

@@ -109,6 +109,7 @@ typedef struct pmesh_header {
     uint64_t exact_bytes;   /* of a lossless file: what its exact positions take
                                behind the last level; 0: it has none */
     uint64_t memory;        /* bytes of the decoder's block for this file */
+    int measured;           /* non-zero: levels have rms and furthest */
 } pmesh_header;
 
 /* Copies the header. PMESH_NEED_DATA until it has arrived; else PMESH_OK. */

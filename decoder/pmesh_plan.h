@@ -8,8 +8,8 @@
  *   level = pmesh_plan_pixels(h.levels, h.level_count, scale, 1.0, level);
  *   fetch up to h.levels[level].bytes, then refine to h.levels[level].faces
  *
- * The screen-space rule. A level's error is a distance to the full mesh in
- * units of the model; seen from `distance` it covers
+ * The screen-space rule. A level's error bounds the distance of the full mesh's
+ * vertices in units of the model; seen from `distance` it covers
  *
  *   pixels = error * pixels_per_unit
  *   pixels_per_unit = image height / (2 * distance * tan(field of view / 2))

@@ -406,7 +406,6 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
         .child = pair->child,
         .parent = pair->parent,
         .before = { before[0], before[1], before[2] },
-        .error = (float)sqrt(error),
     };
     out->vertex_end[pair->child] = index;
     end_face(out, pair->left, index);
@@ -432,17 +431,18 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
         enc_surface_contract(s, pair, offer->place, out->wedge_parent);
 }
 
-/* Squared distance from the original. Memoryless quadrics see only the mesh
- * they are made from, so what went before is added. */
+/* How far the original may be once the pair is one, in steps: what went before
+ * is added. Only if there is a limit. */
 static double total_error(const enc_run *run, const enc_pair *pair,
                           const enc_offer *offer)
 {
     const double child = (double)run->drift[pair->child];
     const double parent = (double)run->drift[pair->parent];
 
-    if (run->config->metric == PMESH_ACCUMULATED)
-        return offer->distance;
-    return offer->distance + (child > parent ? child : parent);
+    if (!(run->error_limit < INFINITY))
+        return 0;
+    return enc_reach_of_pair(&run->surface, pair, offer->place) +
+           (child > parent ? child : parent);
 }
 
 static void queue_again(enc_run *run, uint32_t h, bool back)

@@ -23,6 +23,7 @@
 #include "encoder/enc_near.h"
 #include "encoder/enc_quantile.h"
 #include "encoder/enc_queue.h"
+#include "encoder/enc_reach.h"
 #include "encoder/enc_schedule.h"
 #include "encoder/enc_surface.h"
 
@@ -64,11 +65,14 @@ typedef struct enc_run {
                             left */
     uint8_t *taken;      /* per vertex: batch_count when last in a pair, + 1 */
     enc_role *role;      /* per vertex; NULL unless joined */
-    float *drift;        /* per vertex: squared distance from the original */
+    float *drift;        /* per vertex: how far pairs have led from the
+                            original there, if there is a limit */
     uint32_t face_target, vertex_target;
     uint32_t *segment_size; /* per segment of the guide: its vertices; NULL
                                unless segments have shares */
-    double error_limit;    /* squared, in steps */
+    enc_reach reach;
+    double error_limit;    /* of a level, in steps */
+    bool undone;           /* a batch exceeded it */
     bool too_far;          /* the batch left out a pair because of it */
     double parallel_limit; /* cost up to which parallel pairs are preferred */
     uint32_t tick;         /* candidates seen, for progress */

@@ -2,16 +2,19 @@
 /*
  * enc_encode.c - pmesh_encode(): import, contraction, coding, writing.
  */
+#include <float.h>
 #include <string.h>
 
 #include "encoder/enc_exact.h"
 #include "encoder/enc_import.h"
 #include "encoder/enc_inflate.h"
+#include "encoder/enc_measure.h"
 #include "encoder/enc_mesh.h"
 #include "encoder/enc_replay.h"
 #include "encoder/enc_schedule.h"
 #include "encoder/enc_stream.h"
 #include "format/alloc.h"
+#include "format/quantize.h"
 
 #define MAX_WEIGHT 1e6
 
@@ -95,6 +98,7 @@ typedef struct job {
     enc_replay replay;
     enc_stream stream;
     enc_inflate inflate;
+    enc_measure measure;
     pmesh_header_chunk header;
     uint8_t *room;
     size_t room_size;
@@ -114,24 +118,18 @@ static bool cancelled(const job *j, const char *stage, double done)
 
 /* ---- the level table --------------------------------------------------- */
 
-/* Level k is the mesh after all batches but the last k; filled from the
- * finest, whose error is 0, to the base. A level is as far from the original as
- * the worst contraction that led to it. */
+/* Level k is the mesh after all batches but the last k. Bounds are rounded up,
+ * to a finite float. */
 static void fill_errors(job *j)
 {
     const enc_schedule *s = &j->schedule;
-    float error = 0;
     j->header.levels[s->batch_count].error = 0;
-    for (uint32_t b = 0; b < s->batch_count; b++) {
-        for (uint32_t t = s->batch_first[b]; t < s->batch_first[b + 1]; t++)
-            if (s->contraction[t].error > error)
-                error = s->contraction[t].error;
-        j->header.levels[s->batch_count - b - 1].error =
-            (float)((double)error * j->mesh->grid.step);
-    }
+    for (uint32_t b = 0; b < s->batch_count; b++)
+        j->header.levels[s->batch_count - b - 1].error = pmesh_narrow(
+            s->batch_error[b] * j->mesh->grid.step * (1 + FLT_EPSILON));
 }
 
-static void finish_level(job *j, uint32_t level)
+static pmesh_status finish_level(job *j, uint32_t level)
 {
     const pmesh_mesh *m = &j->replay.codec.mesh;
     pmesh_level_entry *e = &j->header.levels[level];
@@ -139,8 +137,14 @@ static void finish_level(job *j, uint32_t level)
     e->faces = m->face_count;
     e->vertices = m->vertex_count;
     e->wedges = m->wedge_count;
-    if (level < j->schedule.batch_count)
-        e->inflation = enc_inflate_level(&j->inflate, m);
+    if (level == j->schedule.batch_count)
+        return PMESH_OK;
+    e->inflation = enc_inflate_level(&j->inflate, m);
+    if (!j->header.measured)
+        return PMESH_OK;
+    const enc_triangles shown = { m->vertex, (const int32_t(*)[3])m->position,
+                                  m->face_count };
+    return enc_measure_level(&j->measure, &shown, &e->rms, &e->most);
 }
 
 /* ---- chunks ------------------------------------------------------------ */
@@ -183,8 +187,10 @@ static pmesh_status write_base(job *j)
         return PMESH_E_LIMIT;
     enc_stream_chunk(&j->stream, PMESH_CHUNK_BASE, j->room, (uint32_t)out.size);
     j->bytes_base = out.size;
-    finish_level(j, 0);
     const pmesh_mesh *m = &j->replay.codec.mesh;
+    const pmesh_status measured = finish_level(j, 0);
+    if (measured != PMESH_OK)
+        return measured;
     return enc_count_pieces(&j->config.allocator, m->vertex,
                             3 * m->face_count, m->vertex_count,
                             &j->report->base_components);
@@ -279,7 +285,9 @@ static pmesh_status write_levels(job *j)
                               j->mesh->face_count))
                 return PMESH_E_CANCELLED;
         }
-        finish_level(j, level);
+        const pmesh_status status = finish_level(j, level);
+        if (status != PMESH_OK)
+            return status;
     }
     return PMESH_OK;
 }
@@ -319,15 +327,21 @@ static void fill_report(job *j, uint64_t header_size, uint64_t file_size)
     r->base_vertices = h->levels[0].vertices;
     r->end = j->schedule.end;
     r->level_count = h->level_count;
-    for (uint32_t i = 0; i < h->level_count; i++)
-        r->levels[i] = (pmesh_level){ .bytes = header_size + h->levels[i].bytes,
-                                      .faces = h->levels[i].faces,
-                                      .mesh_vertices = h->levels[i].vertices,
-                                      .vertices = h->levels[i].wedges,
-                                      .error = h->levels[i].error,
-                                      .inflation =
-                                          (float)h->levels[i].inflation /
-                                          PMESH_INFLATE_ONE };
+    for (uint32_t i = 0; i < h->level_count; i++) {
+        const pmesh_level_entry *e = &h->levels[i];
+        const double unit = h->grid.step / PMESH_MEASURE_UNIT;
+        r->levels[i] = (pmesh_level){
+            .bytes = header_size + e->bytes,
+            .faces = e->faces,
+            .mesh_vertices = e->vertices,
+            .vertices = e->wedges,
+            .error = e->error,
+            .inflation = (float)e->inflation / PMESH_INFLATE_ONE,
+            .rms = pmesh_narrow(unit * e->rms),
+            .furthest = pmesh_narrow(unit * e->most)
+        };
+    }
+    r->measured = h->measured;
     r->bytes = file_size;
     r->bytes_base = j->bytes_base;
     r->bytes_connectivity = c->part_size[0];
@@ -355,8 +369,13 @@ static pmesh_status code(job *j, const pmesh_mesh_input *in)
     status = enc_inflate_create(j->mesh, &j->inflate);
     if (status != PMESH_OK)
         return status;
+    if (j->config.measure)
+        status = enc_measure_create(j->mesh, &j->measure);
+    if (status != PMESH_OK)
+        return status;
     if (!make_room(j))
         return PMESH_E_MEMORY;
+    j->header.measured = j->config.measure;
     fill_errors(j);
     j->header.sizes.joined = j->mesh->joined;
     write_names(j, in);
@@ -376,6 +395,7 @@ static void job_destroy(job *j)
     const pmesh_allocator a = j->config.allocator;
     pmesh_release(&a, j->room, j->room_size, 1);
     enc_inflate_destroy(&j->inflate);
+    enc_measure_destroy(&j->measure);
     enc_stream_destroy(&j->stream);
     enc_replay_destroy(&j->replay);
     enc_schedule_destroy(&j->schedule);

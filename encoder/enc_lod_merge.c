@@ -68,6 +68,15 @@ void enc_lod_sum(const enc_lod_wedges *ws, const enc_lod_edge *e,
     }
 }
 
+double enc_lod_weight(const enc_lod_wedges *ws)
+{
+    double sum = 0;
+
+    for (uint32_t w = 0; w < ws->count; w++)
+        sum += ws->quadric[ws->list[w]].weight;
+    return sum;
+}
+
 /* How far from `kept` to `gone` the place is, 0 to 1. */
 static double share_of_gone(const enc_lod_edge *e, const double x[3])
 {

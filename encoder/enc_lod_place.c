@@ -7,7 +7,7 @@
 #define MAX_REACH_SQUARED 4.0
 
 /* The place that keeps the volume may cost this much more than the best. */
-#define VOLUME_GUARD 2.0
+#define VOLUME_GUARD 1.2
 
 static double dot(const double a[3], const double b[3])
 {
@@ -78,20 +78,23 @@ static bool optimal(const enc_quadric *q, const double half[3],
     return true;
 }
 
-void enc_lod_place(pmesh_place rule, const enc_quadric *q, const double half[3],
+bool enc_lod_place(pmesh_place rule, const enc_quadric *q, const double half[3],
                    const enc_plane *keep, double x[3])
 {
     double y[3];
 
     if (rule == PMESH_PLACE_MIDPOINT) {
         scaled(half, 0, x);
-        return;
+        return true;
     }
+    if (rule == PMESH_PLACE_VOLUME && keep)
+        return enc_quadric_minimum(q, keep, x) && within_reach(x, half);
     const double limit = best_of_three(q, half, x);
     if (rule == PMESH_PLACE_ENDPOINT)
-        return;
-    if (rule == PMESH_PLACE_OPTIMAL && optimal(q, half, keep, limit, y))
+        return true;
+    if (rule != PMESH_PLACE_LINE && optimal(q, half, keep, limit, y))
         memcpy(x, y, sizeof y);
     else if (on_line(q, half, y) && enc_quadric_value(q, y) <= limit)
         memcpy(x, y, sizeof y);
+    return true;
 }

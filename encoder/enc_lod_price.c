@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "encoder/enc_lod_hull.h"
 #include "encoder/enc_lod_place.h"
 #include "format/alloc.h"
 
@@ -72,6 +73,24 @@ static enc_lod_edge edge_between(const enc_lod *lod, uint32_t gone,
 
 /* ---- memory -------------------------------------------------------------- */
 
+/* The plane that stands upright on a face over its edge to `far`, if that is a
+ * rim: v was surveyed. */
+static void remember_rim(enc_lod_pricer *p, uint32_t v, uint32_t far,
+                         const double n[3])
+{
+    const enc_lod *lod = p->lod;
+    double along[3];
+
+    if (lod->mark[far].faces != 1 || !(p->wedges.boundary > 0))
+        return;
+    difference(lod->position[far], lod->position[v], along);
+    const double upright[3] = { along[1] * n[2] - along[2] * n[1],
+                                along[2] * n[0] - along[0] * n[2],
+                                along[0] * n[1] - along[1] * n[0] };
+    if (dot(upright, upright) > 0)
+        enc_quadric_add_plane(&p->memory[v], upright, sqrt(dot(along, along)));
+}
+
 /* Weighted by the root of the area: by the area, thin limbs would count for
  * too little, and with equal weights, flat parts of few faces. */
 void enc_lod_pricer_remember(enc_lod_pricer *p, uint32_t v)
@@ -84,8 +103,11 @@ void enc_lod_pricer_remember(enc_lod_pricer *p, uint32_t v)
         double n[3];
         enc_lod_normal(lod, c, lod->position[v], n);
         const double square = dot(n, n);
-        if (square > 0)
-            enc_quadric_add_plane(&p->memory[v], n, sqrt(0.5 * sqrt(square)));
+        if (!(square > 0))
+            continue;
+        enc_quadric_add_plane(&p->memory[v], n, sqrt(0.5 * sqrt(square)));
+        remember_rim(p, v, lod->corner_vertex[enc_lod_after(c)], n);
+        remember_rim(p, v, lod->corner_vertex[enc_lod_before(c)], n);
     } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
 }
 
@@ -108,6 +130,7 @@ static void add_recalled(const enc_lod_pricer *p, const enc_quadric *memory,
     for (int i = 0; i < 3; i++)
         total->b[i] += p->recall * memory->b[i];
     total->c += p->recall * memory->c;
+    total->weight += p->recall * memory->weight;
 }
 
 static void carry_memory(enc_lod_pricer *p, const enc_lod_offer *offer)
@@ -124,9 +147,18 @@ static void carry_memory(enc_lod_pricer *p, const enc_lod_offer *offer)
 
 /* ---- costs --------------------------------------------------------------- */
 
+/* By area times squared distance alone, small features go too early: area
+ * counts to the power of 3/4. A smaller power lowers the largest distance
+ * further, and raises the mean. */
+static double balance(double value, double weight)
+{
+    return weight > 0 ? value / sqrt(sqrt(weight)) : value;
+}
+
 /* x: relative to the middle. */
 static double cost_of(const enc_lod_pricer *p, const enc_lod_edge *e,
-                      const double x[3], double value, double distance)
+                      const double x[3], double value, double weight,
+                      double distance)
 {
     enc_cost_pair pair = {
         .kept = e->kept,
@@ -136,6 +168,8 @@ static double cost_of(const enc_lod_pricer *p, const enc_lod_edge *e,
         .distance = distance,
     };
 
+    if (p->rule.cost == PMESH_COST_QUADRIC)
+        pair.quadric = balance(value, weight);
     for (int i = 0; i < 3; i++) {
         pair.middle[i] = e->middle[i];
         pair.half[i] = e->half[i];
@@ -171,6 +205,21 @@ static bool volume_plane(const enc_lod_pricer *p, const enc_lod_edge *e,
     return true;
 }
 
+/* False: nowhere. */
+static bool find_place(const enc_lod_pricer *p, const enc_lod_edge *e,
+                       const enc_quadric *total, double x[3])
+{
+    enc_plane keep;
+    bool held = false;
+
+    if (p->placement == PMESH_PLACE_HULL)
+        return enc_lod_hull_place(p->lod, e, total, x);
+    if (p->placement == PMESH_PLACE_OPTIMAL ||
+        p->placement == PMESH_PLACE_VOLUME)
+        held = volume_plane(p, e, &keep);
+    return enc_lod_place(p->placement, total, e->half, held ? &keep : NULL, x);
+}
+
 /* The offer of letting `gone` go; with values only if it is to be taken. */
 static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
                                 bool full)
@@ -178,6 +227,7 @@ static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
     const enc_lod_edge e = edge_between(p->lod, gone, kept);
     enc_lod_offer offer = { .gone = gone, .kept = kept };
     double x[3] = { -e.half[0], -e.half[1], -e.half[2] };
+    double weight = 0;
     enc_quadric memory;
 
     enc_lod_gather(&p->wedges, gone, kept);
@@ -185,18 +235,17 @@ static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
     if (p->placement == PMESH_PLACE_ENDPOINT) {
         offer.quadric = enc_lod_onto_kept(&p->wedges, &e, p->break_seams) +
                         p->recall * enc_quadric_value(&memory, x);
+        weight = enc_lod_weight(&p->wedges) + p->recall * memory.weight;
         memcpy(offer.place, p->lod->position[kept], sizeof offer.place);
         if (full && offer.quadric < INFINITY)
             enc_lod_choose(&p->wedges);
     } else {
         enc_quadric total;
-        enc_plane keep;
         enc_lod_sum(&p->wedges, &e, &total);
         add_recalled(p, &memory, &total);
-        const bool held =
-            p->placement == PMESH_PLACE_OPTIMAL && volume_plane(p, &e, &keep);
-        enc_lod_place(p->placement, &total, e.half, held ? &keep : NULL, x);
-        offer.quadric = enc_quadric_value(&total, x);
+        const bool placed = find_place(p, &e, &total, x);
+        offer.quadric = placed ? enc_quadric_value(&total, x) : INFINITY;
+        weight = total.weight;
         for (int i = 0; i < 3; i++)
             offer.place[i] = e.middle[i] + x[i];
         if (full && enc_lod_stride(&p->wedges) > 0)
@@ -204,7 +253,7 @@ static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
     }
     if (memory.weight > 0)
         offer.distance = enc_quadric_value(&memory, x) / memory.weight;
-    offer.cost = cost_of(p, &e, x, offer.quadric, offer.distance);
+    offer.cost = cost_of(p, &e, x, offer.quadric, weight, offer.distance);
     return offer;
 }
 

@@ -83,6 +83,9 @@ void enc_lod_gather(enc_lod_wedges *ws, uint32_t gone, uint32_t kept);
 void enc_lod_sum(const enc_lod_wedges *ws, const enc_lod_edge *e,
                  enc_quadric *total);
 
+/* The weight of all these planes. */
+double enc_lod_weight(const enc_lod_wedges *ws);
+
 /* Solves for the values of all fates at x, seen from the middle. */
 void enc_lod_solve(enc_lod_wedges *ws, const enc_lod_edge *e,
                    const double x[3]);

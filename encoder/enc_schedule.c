@@ -65,6 +65,10 @@ enum { FINE_BATCHES = 2 };
 /* The run ends if this many batches in a row take less than a fiftieth. */
 enum { MAX_POOR_BATCHES = 3, POOR_SHARE = 50 };
 
+/* Batches that start closer to the limit of errors than half of it are smaller
+ * by this: the one that leads too far is lost. */
+#define CLOSE_SHARE 0.25
+
 enum { DEFAULT_BASE_FACES = 200, MIN_BASE_FACES = 4, BASE_DIVISOR = 8 };
 
 static pmesh_status schedule_create(const enc_mesh *mesh, enc_schedule *out)
@@ -78,6 +82,8 @@ static pmesh_status schedule_create(const enc_mesh *mesh, enc_schedule *out)
 
     s.batch_first =
         pmesh_alloc_zero(a, PMESH_MAX_LEVELS, sizeof *s.batch_first);
+    s.batch_error =
+        pmesh_alloc_zero(a, PMESH_MAX_LEVELS, sizeof *s.batch_error);
     s.contraction = pmesh_alloc(a, n, sizeof *s.contraction);
     s.vertex_end = pmesh_alloc(a, n, sizeof *s.vertex_end);
     s.face_end = pmesh_alloc(a, mesh->face_count, sizeof *s.face_end);
@@ -87,7 +93,7 @@ static pmesh_status schedule_create(const enc_mesh *mesh, enc_schedule *out)
         s.wedge_parent =
             pmesh_alloc(a, mesh->wedge_count, sizeof *s.wedge_parent);
     *out = s;
-    if (!s.batch_first || !s.contraction || !s.vertex_end || !s.face_end ||
+    if (!s.batch_first || !s.batch_error || !s.contraction || !s.vertex_end || !s.face_end ||
         (mesh->joined && !s.face_side) ||
         (mesh->wedge && !s.wedge_parent)) {
         enc_schedule_destroy(out);
@@ -109,6 +115,7 @@ void enc_schedule_destroy(enc_schedule *s)
     if (!a->release)
         return;
     pmesh_release(a, s->batch_first, PMESH_MAX_LEVELS, sizeof *s->batch_first);
+    pmesh_release(a, s->batch_error, PMESH_MAX_LEVELS, sizeof *s->batch_error);
     pmesh_release(a, s->contraction, n, sizeof *s->contraction);
     pmesh_release(a, s->vertex_end, n, sizeof *s->vertex_end);
     pmesh_release(a, s->position, n, sizeof *s->position);
@@ -179,6 +186,8 @@ static pmesh_status run_create(const enc_mesh *mesh,
         status = enc_queue_create(a, count_edges(mesh) + near_room(mesh),
                                   &run->queue);
     if (status == PMESH_OK)
+        status = enc_reach_create(mesh, &run->reach);
+    if (status == PMESH_OK)
         status = find_near(mesh, run);
     if (status == PMESH_OK && !count_segments(mesh, run))
         status = PMESH_E_MEMORY;
@@ -206,6 +215,7 @@ static void run_destroy(const enc_mesh *mesh, enc_run *run)
     if (run->queue.list)
         enc_queue_destroy(&run->queue);
     enc_near_destroy(&run->near);
+    enc_reach_destroy(&run->reach);
     pmesh_release(a, run->edge_state,
                   3 * (size_t)mesh->face_count + near_room(mesh), 1);
     pmesh_release(a, run->taken, mesh->vertex_count, sizeof *run->taken);
@@ -245,8 +255,9 @@ static void set_targets(enc_run *run)
     run->face_target = enc_base_target(config, run->mesh->face_count);
     run->vertex_target = config->base_vertices;
 
-    const double steps = config->base_error / run->mesh->grid.step;
-    run->error_limit = config->base_error > 0 ? steps * steps : INFINITY;
+    run->error_limit = config->base_error > 0
+                           ? config->base_error / run->mesh->grid.step
+                           : INFINITY;
 }
 
 /* Of the vertices that are left, those that are not heavy. */
@@ -283,6 +294,8 @@ static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
         plan.guard = fmin(plan.guard, light_share(run));
     if (run->joins_sheets)
         plan.guard = 1; /* there is little else */
+    if (4 * run->reach.most > run->error_limit * run->error_limit)
+        plan.share *= CLOSE_SHARE;
     plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)
         plan.limit = 1;
@@ -301,6 +314,43 @@ static bool relent(enc_run *run)
     return *next = true;
 }
 
+/* Takes back the contractions from the last batch on. */
+static void undo_batch(enc_run *run)
+{
+    enc_schedule *out = run->out;
+    const uint32_t first = out->batch_first[out->batch_count];
+
+    for (uint32_t t = out->contraction_count; t-- > first;) {
+        const enc_contraction *c = &out->contraction[t];
+        memcpy(run->surface.position[c->parent], c->before, sizeof c->before);
+        out->vertex_end[c->child] = ENC_NONE;
+    }
+    for (uint32_t f = 0; f < run->mesh->face_count; f++)
+        if (out->face_end[f] != ENC_NONE && out->face_end[f] >= first)
+            out->face_end[f] = ENC_NONE;
+    for (uint32_t w = 0; run->mesh->wedge && w < run->mesh->wedge_count; w++)
+        if (out->vertex_end[run->mesh->wedge_vertex[w]] == ENC_NONE)
+            out->wedge_parent[w] = ENC_NONE;
+    out->contraction_count = first;
+}
+
+/* Makes a batch of the last contractions; false, and they are taken back, if
+ * that led too far. */
+static bool close_batch(enc_run *run)
+{
+    enc_schedule *out = run->out;
+    const double bound = enc_reach_bound(&run->reach, &run->surface, out);
+
+    if (bound > run->error_limit) {
+        undo_batch(run);
+        run->undone = true;
+        return false;
+    }
+    out->batch_error[out->batch_count] = bound;
+    out->batch_first[++out->batch_count] = out->contraction_count;
+    return true;
+}
+
 static void run_batches(enc_run *run, uint32_t variant)
 {
     enc_schedule *out = run->out;
@@ -312,8 +362,8 @@ static void run_batches(enc_run *run, uint32_t variant)
         const uint32_t n = run->surface.vertex_count;
         const uint32_t taken = enc_batch_contract(run, &plan);
 
-        if (taken > 0)
-            out->batch_first[++out->batch_count] = out->contraction_count;
+        if (taken > 0 && !close_batch(run))
+            break;
         poor = taken < n / POOR_SHARE ? poor + 1 : 0;
         if (taken > n / POOR_SHARE)
             continue;
@@ -326,6 +376,8 @@ static void run_batches(enc_run *run, uint32_t variant)
 
 static pmesh_simplify_end reason(const enc_run *run)
 {
+    if (run->undone)
+        return PMESH_END_ERROR;
     if (run->surface.face_count <= run->face_target)
         return PMESH_END_FACES;
     if (run->surface.vertex_count <= run->vertex_target)

@@ -24,8 +24,6 @@
 typedef struct enc_contraction {
     uint32_t child, parent;
     int32_t before[3]; /* of the parent, grid coordinates, before */
-    float error;       /* distance from the original in grid steps, estimate
-                          of the root mean square around v; >= 0 */
 } enc_contraction;
 
 typedef struct enc_schedule {
@@ -36,6 +34,8 @@ typedef struct enc_schedule {
     uint32_t batch_count;  /* at most PMESH_MAX_LEVELS - 1, none is empty */
     uint32_t *batch_first; /* batch_count + 1 entries into `contraction`: batch
                               0 is contracted first, so it is the finest */
+    double *batch_error;   /* per batch: bound of the distance in steps after
+                              it, see enc_reach.h; never falls */
     enc_contraction *contraction; /* in the order of contraction */
     uint32_t contraction_count;
 

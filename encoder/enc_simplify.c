@@ -5,19 +5,22 @@
 #include <string.h>
 
 #include "encoder/enc_heap.h"
+#include "encoder/enc_lod_delay.h"
 #include "encoder/enc_lod_guard.h"
 #include "encoder/enc_lod_import.h"
 #include "encoder/enc_lod_price.h"
 #include "format/alloc.h"
 
-/* What is known of a pair that was refused: the other direction is next. */
-enum { TURNED = 1 };
+/* What is known of a pair that was put back: the other direction is next; it
+ * has waited. */
+enum { TURNED = 1, WAITED = 2 };
 
 typedef struct enc_lod_run {
     const pmesh_simplify_options *options;
     enc_lod lod;
     enc_lod_channels channels;
     enc_lod_pricer pricer;
+    enc_lod_delay delay;
     enc_heap heap;
     uint8_t *turned;  /* per pair */
     uint32_t *priced; /* per pair: the contraction after which it was */
@@ -40,6 +43,7 @@ pmesh_simplify_options pmesh_simplify_options_default(void)
         .memory = 0.5,
         .boundary = 10,
         .seam = 3,
+        .turn_cosine = -1,
     };
 }
 
@@ -108,6 +112,7 @@ static bool is_legal(enc_lod_run *run, const enc_lod_offer *offer)
     return enc_lod_can_join(&run->lod, offer->gone, offer->kept,
                             run->strictness) &&
            !enc_lod_flips(&run->lod, offer->gone, offer->kept, offer->place) &&
+           !(run->delay.least_cosine < run->options->turn_cosine) &&
            (run->channels.count == 0 ||
             (!values_flip(run, offer->gone, offer->kept) &&
              !values_flip(run, offer->kept, offer->gone)));
@@ -160,10 +165,27 @@ static void contract(enc_lod_run *run, uint32_t pair,
     run->joined += !enc_lod_share_face(&run->lod, offer->gone, offer->kept);
     enc_lod_contract(&run->lod, pair, offer->gone, offer->kept);
     enc_lod_settle(&run->pricer.wedges, offer->kept);
+    enc_lod_delay_move(&run->delay, offer->kept);
     if (run->strictness == ENC_LOD_LOOSE)
         enc_lod_cancel(&run->lod, offer->kept);
     if (run->lod.first_corner[offer->kept] != ENC_NONE)
         renew_around(run, offer->kept);
+}
+
+/* True if the pair has been put back: it is taken when it comes again. */
+static bool puts_off(enc_lod_run *run, uint32_t pair,
+                     const enc_lod_offer *offer)
+{
+    const double factor = enc_lod_delay_factor(&run->delay, offer->gone,
+                                               offer->kept, offer->place);
+
+    /* Other costs mean what they say. */
+    if (!(factor > 1) || (run->turned[pair] & WAITED) ||
+        run->options->cost != PMESH_COST_QUADRIC)
+        return false;
+    run->turned[pair] |= WAITED;
+    enc_heap_put(&run->heap, pair, factor * offer->cost);
+    return true;
 }
 
 static void try_pair(enc_lod_run *run, uint32_t pair)
@@ -183,6 +205,8 @@ static void try_pair(enc_lod_run *run, uint32_t pair)
         run->too_far = true;
         return;
     }
+    if (puts_off(run, pair, &offer))
+        return;
     if (is_legal(run, &offer)) {
         contract(run, pair, &offer, error);
         return;
@@ -190,7 +214,7 @@ static void try_pair(enc_lod_run *run, uint32_t pair)
     if (run->pricer.placement != PMESH_PLACE_ENDPOINT || turned)
         return;
     const double cost = enc_lod_pricer_cost(&run->pricer, u, v, true);
-    run->turned[pair] |= TURNED;
+    run->turned[pair] = TURNED;
     if (cost < INFINITY)
         enc_heap_put(&run->heap, pair, cost);
 }
@@ -227,8 +251,9 @@ static bool in_range(const pmesh_simplify_options *o)
            o->weld >= 0 && o->weld < INFINITY && o->threshold >= 0 &&
            o->threshold < INFINITY && o->boundary >= 0 &&
            o->boundary < INFINITY && o->memory >= 0 && o->memory < INFINITY &&
+           o->turn_cosine >= -1 && o->turn_cosine < 1 &&
            o->seam >= 0 && o->seam < INFINITY &&
-           (unsigned)o->placement <= PMESH_PLACE_ENDPOINT &&
+           (unsigned)o->placement <= PMESH_PLACE_HULL &&
            (unsigned)o->cost <= PMESH_COST_CUSTOM &&
            (unsigned)o->metric <= PMESH_ACCUMULATED &&
            (o->cost != PMESH_COST_CUSTOM || o->hook) &&
@@ -270,7 +295,7 @@ static pmesh_status prepare(enc_lod_run *run, const pmesh_allocator *a)
             enc_lod_sum_normals(&run->lod, v);
         }
     price_all(run);
-    return PMESH_OK;
+    return enc_lod_delay_create(&run->lod, &run->delay);
 }
 
 static void release(enc_lod_run *run, const pmesh_allocator *a)
@@ -280,6 +305,7 @@ static void release(enc_lod_run *run, const pmesh_allocator *a)
     pmesh_release(a, run->drift, run->lod.vertex_count, sizeof *run->drift);
     pmesh_release(a, run->moved, run->lod.vertex_count, 1);
     enc_heap_destroy(&run->heap);
+    enc_lod_delay_destroy(&run->delay);
     enc_lod_pricer_destroy(&run->pricer);
     enc_lod_destroy(&run->lod);
 }
@@ -352,7 +378,8 @@ static void put_costs(const enc_lod_run *run, pmesh_simplify_output *out)
     out->cost_most = out->cost_mean = 0;
     for (uint32_t i = 0; i < run->heap.count; i++) {
         const enc_heap_entry *e = &run->heap.entry[i];
-        if (run->lod.end_vertex[2 * e->item] == ENC_NONE)
+        if (run->lod.end_vertex[2 * e->item] == ENC_NONE ||
+            (run->turned[e->item] & WAITED))
             continue;
         sum += e->cost;
         count++;

@@ -119,8 +119,12 @@ typedef struct pmesh_encoder_config {
     uint32_t base_faces;       /* stop at this many faces; 0: about 200 */
     uint32_t base_vertices;    /* ... or this many vertices; 0: no such stop */
     double base_ratio;         /* ... or this share of the faces; 0: no stop */
-    double base_error;         /* ... or when the next contraction would exceed
-                                  this distance, model units; 0: no such stop */
+    double base_error;         /* ... or when the next level would be further
+                                  than this, as pmesh_level.error tells, model
+                                  units; 0: no such stop */
+    int measure;               /* non-zero: the file tells of each level its
+                                  distance to the full mesh, both ways, at 2^14
+                                  points each: pmesh_level.rms, .furthest */
     pmesh_base_coder base_coder; /* default PMESH_BASE_NATIVE; Draco needs both
                                     hooks; often smaller from some 10,000 base
                                     faces on. A base that it cannot hold is
@@ -191,6 +195,7 @@ typedef struct pmesh_encode_report {
                                      nothing was left to contract */
     uint32_t level_count;
     pmesh_level levels[PMESH_MAX_LEVELS];
+    int measured;                 /* the levels are */
     uint64_t bytes;               /* the file */
     uint64_t bytes_header, bytes_base, bytes_connectivity, bytes_positions,
         bytes_attributes;         /* its parts, chunk framing in bytes_header */

@@ -67,13 +67,25 @@ typedef enum pmesh_place {
                                 middle or an end where there is no minimum */
     PMESH_PLACE_LINE = 1,    /* to the best place between the ends */
     PMESH_PLACE_MIDPOINT = 2,
-    PMESH_PLACE_ENDPOINT = 3 /* to the better end: vertices of the result are
-                                vertices of the input */
+    PMESH_PLACE_ENDPOINT = 3, /* to the better end: vertices of the result are
+                                 vertices of the input */
+    PMESH_PLACE_VOLUME = 4, /* where the volume within a closed surface stays
+                               the same, whatever that costs */
+    PMESH_PLACE_HULL = 5    /* to the best place outside of all faces around:
+                               a closed surface grows, and each result encloses
+                               the input (a progressive hull: Sander, Gu,
+                               Gortler, Hoppe and Snyder, Silhouette Clipping,
+                               2000). Hollows fill up; it ends early where no
+                               such place is left */
 } pmesh_place;
 
 /* Which edge is contracted first. Placement goes by quadrics in any case. */
 typedef enum pmesh_cost {
-    PMESH_COST_QUADRIC = 0, /* area times squared distance to the planes */
+    PMESH_COST_QUADRIC = 0, /* squared distance to the planes, times the area
+                               to the power of 3/4. What would leave a place
+                               far behind, fold, turn a face, or make a sliver
+                               or a vertex of many faces has to wait: it counts
+                               as dearer */
     PMESH_COST_LENGTH = 1,  /* half the edge, nothing else */
     PMESH_COST_CAMERA = 2,  /* that, by 0.01 of the distance to the camera: what
                                is far goes first, whatever its shape */
@@ -162,6 +174,10 @@ typedef struct pmesh_simplify_options {
                               squared lengths of the edge; default 10 */
     double seam;           /* the same of seams of attributes and of borders of
                               materials; default 3 */
+    double turn_cosine;    /* no face that is left turns further away from how
+                              it was in the input: the cosine of the angle;
+                              default -1: no bound. One contraction turns none
+                              by more than 78 degrees in any case */
     int loose;             /* non-zero: when nothing else is left, pieces may
                               vanish, holes close, parts join; default 0 */
 } pmesh_simplify_options;
@@ -195,7 +211,7 @@ typedef struct pmesh_simplify_output {
     double error; /* estimated distance to the original, root mean square where
                      it is largest, model units; never falls while faces do */
     double cost_least, cost_mean, cost_most; /* of the contractions that may
-                     come next; 0 if there is none */
+                     come next, those that wait apart; 0 if there is none */
     size_t joined;        /* contractions without an edge: see threshold */
     size_t dropped_faces; /* of the input: degenerate or not finite */
 } pmesh_simplify_output;

@@ -46,7 +46,8 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h)
                   (h->base_coder == PMESH_BASE_DRACO ? PMESH_MODES_DRACO_BASE
                                                      : 0) |
                   (h->exact_size > 0 ? PMESH_MODES_LOSSLESS : 0) |
-                  (s->joined ? PMESH_MODES_JOINED : 0),
+                  (s->joined ? PMESH_MODES_JOINED : 0) |
+                  (h->measured ? PMESH_MODES_MEASURED : 0),
               1);
     pmesh_put(out, h->grid.bits, 1);
     for (int k = 0; k < 3; k++)
@@ -81,6 +82,10 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h)
             pmesh_put_varint(out, e->wedges - last.wedges);
         pmesh_put_f32(out, e->error);
         pmesh_put(out, e->inflation, 1);
+        if (h->measured) {
+            pmesh_put_varint(out, e->rms);
+            pmesh_put_varint(out, e->most);
+        }
         last = *e;
     }
 }
@@ -145,6 +150,8 @@ static const char *read_level(pmesh_cursor *in, pmesh_header_chunk *h,
         h->attribute_count ? pmesh_get_count(in, PMESH_MAX_WEDGES) : vertices;
     e->error = pmesh_get_f32(in);
     e->inflation = pmesh_get_u8(in);
+    e->rms = h->measured ? pmesh_get_count(in, PMESH_MAX_MEASURED) : 0;
+    e->most = h->measured ? pmesh_get_count(in, PMESH_MAX_MEASURED) : 0;
     if (in->overrun || bytes > PMESH_MAX_FILE - last->bytes ||
         faces > PMESH_MAX_FACES - last->faces ||
         vertices > PMESH_MAX_FACES - last->vertices ||
@@ -154,7 +161,7 @@ static const char *read_level(pmesh_cursor *in, pmesh_header_chunk *h,
     e->faces = last->faces + faces;
     e->vertices = last->vertices + vertices;
     e->wedges = last->wedges + wedges;
-    if (!is_finite(e->error) || e->error < 0)
+    if (!is_finite(e->error) || e->error < 0 || e->rms > e->most)
         return "SPEC 5.3: a level's error is not a distance";
     if (last->faces == 0) /* the base mesh */
         return faces >= 1 && vertices >= 3 && vertices / 3 <= faces &&
@@ -202,6 +209,7 @@ static const char *read_frame(pmesh_cursor *in, pmesh_header_chunk *h)
     h->profile = (pmesh_profile)(modes & PMESH_MODES_PROFILE);
     h->sizes.moves = modes & PMESH_MODES_MOVES;
     h->sizes.joined = modes & PMESH_MODES_JOINED;
+    h->measured = modes & PMESH_MODES_MEASURED;
     h->base_coder = modes & PMESH_MODES_DRACO_BASE ? PMESH_BASE_DRACO
                                                    : PMESH_BASE_NATIVE;
     h->exact_size = modes & PMESH_MODES_LOSSLESS ? 1 : 0; /* until it is read */

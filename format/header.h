@@ -15,6 +15,7 @@ typedef struct pmesh_level_entry {
     uint32_t faces, vertices, wedges;
     float error;
     uint8_t inflation; /* see inflate.h; 0 at the last */
+    uint32_t rms, most; /* measured; 0 unless the header has them */
 } pmesh_level_entry;
 
 typedef struct pmesh_header_chunk {
@@ -32,6 +33,7 @@ typedef struct pmesh_header_chunk {
     pmesh_form exact_form[3];
     uint32_t attribute_count;
     pmesh_attribute attributes[PMESH_MAX_ATTRIBUTES];
+    bool measured;
     uint32_t level_count;
     pmesh_level_entry levels[PMESH_MAX_LEVELS];
 } pmesh_header_chunk;

@@ -35,7 +35,10 @@
 #define PMESH_MODES_DRACO_BASE 8u  /* the base mesh is a Draco buffer */
 #define PMESH_MODES_LOSSLESS 16u   /* exact positions at the end */
 #define PMESH_MODES_JOINED 32u     /* vertices may have several fans */
-#define PMESH_MODES_ALL 63u
+#define PMESH_MODES_MEASURED 64u   /* levels tell their measured distances, */
+#define PMESH_MODES_ALL 127u
+#define PMESH_MEASURE_UNIT 16      /* in so many parts of a step */
+#define PMESH_MAX_MEASURED (1u << 30)
 
 #define PMESH_MAX_HEADER_SIZE 4096
 #define PMESH_MAX_CHUNK_SIZE (1u << 28)

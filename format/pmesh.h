@@ -115,11 +115,17 @@ typedef struct pmesh_level {
     uint32_t faces;
     uint32_t mesh_vertices; /* distinct positions */
     uint32_t vertices;      /* output vertices: position and attributes */
-    float error;            /* distance to the full mesh, model units, estimate;
-                               falls from level to level, 0 at the last */
+    float error;            /* bound: no vertex of the full mesh, as it lies on
+                               the grid, is further from this level's surface;
+                               pieces that have vanished do not count. Model
+                               units, never rises, 0 at the last */
     float inflation;        /* share of its height over its neighbours by which
                                a vertex may be moved out for display; 0 at the
                                last (SPEC 7.1) */
+    float rms, furthest;    /* of a measured file: distance to the full mesh, at
+                               points spread evenly over both, each to the other
+                               surface: root mean square and largest; model
+                               units, up to 1/16 grid step too much. Else 0 */
 } pmesh_level;
 
 /* The same of a scene (pmesh_scene.h): what is there once `bytes` have come. */

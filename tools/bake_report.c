@@ -80,7 +80,7 @@ static void print_parts(const pmesh_encode_report *e, FILE *out)
             " welded, %" PRIu32 " unused, %" PRIu32 " added by cuts)\n",
             e->input_faces, e->input_vertices, e->welded_vertices,
             e->unused_vertices, e->cut_vertices);
-    levels_print(out, e->levels, e->level_count);
+    levels_print(out, e->levels, e->level_count, e->measured);
 }
 
 void bake_report_print(const bake_report *r, FILE *out, bool verbose)
@@ -210,7 +210,7 @@ void bake_report_json(const bake_report *r, FILE *out)
     json_seconds(&j, "write", r->seconds_write);
     json_seconds(&j, "total", r->seconds_total);
     json_close(&j);
-    levels_json(&j, e->levels, e->level_count);
+    levels_json(&j, e->levels, e->level_count, e->measured);
     json_warnings(&j, &r->notes);
     json_end(&j);
 }

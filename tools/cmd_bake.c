@@ -32,7 +32,8 @@ typedef struct options {
     double base_ratio, max_error, weld, threshold, crease;
     double normal_weight, uv_weight, color_weight, generic_weight;
     file_data guide_data;
-    bool lossless, no_attributes, merge, json, quiet, verbose, progress;
+    bool lossless, measure, no_attributes, merge, json, quiet, verbose;
+    bool progress;
 } options;
 
 #define AT(member) .offset = offsetof(options, member)
@@ -92,8 +93,11 @@ static const args_option option_table[] = {
               "smaller from about 10000 base faces on" },
     { .name = "max-error", .kind = ARGS_NUMBER, .value = "E", .min = 0,
       .max = DBL_MAX, AT(max_error),
-      .help = "no level is further than E from the full mesh\n"
-              "(model units); default 0: no bound" },
+      .help = "no vertex of the full mesh is further than E from\n"
+              "any level (model units); default 0: no bound" },
+    { .name = "measure", .kind = ARGS_FLAG, AT(measure),
+      .help = "measure the distance of each level to the full\n"
+              "mesh, both ways, for the level table" },
     { .name = "metric", .kind = ARGS_CHOICE,
       .value = "memoryless|accumulated", AT(metric),
       .help = "quadrics of the current surface (default) or\n"
@@ -249,6 +253,7 @@ static void configure(const options *o, pmesh_encoder_config *config)
     config->base_decoder = draco_base_decode;
     config->weld = o->weld;
     config->lossless = o->lossless;
+    config->measure = o->measure;
     config->threshold = o->threshold;
     config->topology = (pmesh_topology)o->topology;
     config->threads = o->threads;

@@ -101,7 +101,7 @@ static void print_text(const char *path, const stream *s, uint64_t size,
     print_materials(s);
     if (levels) {
         putchar('\n');
-        levels_print(stdout, h->levels, h->level_count);
+        levels_print(stdout, h->levels, h->level_count, h->measured);
     }
 }
 
@@ -136,7 +136,7 @@ static void json_lists(json *j, const stream *s)
     for (uint32_t i = 0; i < h->material_count; i++)
         json_text(j, NULL, pmesh_decoder_material_name(s->decoder, i));
     json_close(j);
-    levels_json(j, h->levels, h->level_count);
+    levels_json(j, h->levels, h->level_count, h->measured);
 }
 
 static void print_json(const char *path, const stream *s, uint64_t size)
@@ -170,6 +170,7 @@ static void print_json(const char *path, const stream *s, uint64_t size)
     json_text(&j, "placement", levels_placement_name(h->placement));
     json_count(&j, "position_bits", h->grid.bits);
     json_bool(&j, "joined", h->joined != 0);
+    json_bool(&j, "measured", h->measured != 0);
     json_bool(&j, "lossless", h->exact_bytes > 0);
     json_count(&j, "lossless_bytes", h->exact_bytes);
     json_grid(&j, h);

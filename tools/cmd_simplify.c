@@ -15,6 +15,7 @@
 #include "tools/lod.h"
 #include "tools/progress.h"
 #include "tools/report.h"
+#include "tools/trig.h"
 #include "tools/triple.h"
 
 typedef struct options {
@@ -24,6 +25,7 @@ typedef struct options {
     uint32_t faces, vertices;
     double ratio, error; /* negative: not given */
     double weld, threshold, memory;
+    double turn; /* degrees; negative: not given */
     lod_weights weights;
     bool loose, no_attributes, json, quiet;
 } options;
@@ -32,7 +34,7 @@ typedef struct options {
 
 /* The choices of --cost in the order of pmesh_cost; -1: not given. */
 #define COSTS "quadric|length|camera|quadric-camera"
-#define PLACEMENTS "optimal|line|midpoint|endpoint"
+#define PLACEMENTS "optimal|line|midpoint|endpoint|volume|hull"
 
 static const args_option option_table[] = {
     { .name = "output", .letter = 'o', .kind = ARGS_TEXT, .value = "OUT",
@@ -53,7 +55,9 @@ static const args_option option_table[] = {
     { .name = "placement", .kind = ARGS_CHOICE, .value = PLACEMENTS,
       AT(placement),
       .help = "where a contracted edge goes: to the least error\n"
-              "(default), on itself, its middle, its better end" },
+              "(default), on itself, its middle, its better end,\n"
+              "where the volume stays, or outside of the surface:\n"
+              "with hull the result encloses IN" },
     { .name = "cost", .kind = ARGS_CHOICE, .value = COSTS, AT(cost),
       .help = "what goes first: the least error (default), short\n"
               "edges, short ones as a camera sees them (both to\n"
@@ -85,6 +89,9 @@ static const args_option option_table[] = {
       .max = DBL_MAX, AT(threshold),
       .help = "also contract unconnected vertices closer than T\n"
               "(model units): parts grow together" },
+    { .name = "turn", .kind = ARGS_NUMBER, .value = "DEG", .min = 1, .max = 180,
+      AT(turn),
+      .help = "turn no face further than this from how it was" },
     { .name = "loose", .kind = ARGS_FLAG, AT(loose),
       .help = "rather than stopping early, let pieces vanish and\n"
               "holes close" },
@@ -161,6 +168,8 @@ static int configure(const options *o, pmesh_simplify_options *to)
     to->weld = o->weld;
     to->threshold = o->threshold;
     to->loose = o->loose;
+    if (o->turn >= 0)
+        to->turn_cosine = trig_cos(o->turn / 360);
     if (o->placement >= 0)
         to->placement = (pmesh_place)o->placement;
     else if (to->cost == PMESH_COST_LENGTH || to->cost == PMESH_COST_CAMERA)
@@ -306,6 +315,7 @@ int cmd_simplify(int argc, char **argv)
                   .placement = -1,
                   .ratio = -1,
                   .error = -1,
+                  .turn = -1,
                   .memory = pmesh_simplify_options_default().memory,
                   .weights = { 0.01, 0.1, 0.03, 0.03 } };
     pmesh_simplify_options how;

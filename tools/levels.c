@@ -10,19 +10,27 @@ uint32_t levels_within(const pmesh_level *levels, uint32_t count,
     return n;
 }
 
-void levels_print(FILE *out, const pmesh_level *levels, uint32_t count)
+void levels_print(FILE *out, const pmesh_level *levels, uint32_t count,
+                  bool measured)
 {
     fprintf(out,
-            "level       bytes       faces    vertices       error  inflate\n");
-    for (uint32_t i = 0; i < count; i++)
-        fprintf(out, "%5lu %11llu %11lu %11lu %11.4g %8.3f\n", (unsigned long)i,
+            "level       bytes       faces    vertices       error  inflate%s\n",
+            measured ? "         rms    furthest" : "");
+    for (uint32_t i = 0; i < count; i++) {
+        fprintf(out, "%5lu %11llu %11lu %11lu %11.4g %8.3f", (unsigned long)i,
                 (unsigned long long)levels[i].bytes,
                 (unsigned long)levels[i].faces,
                 (unsigned long)levels[i].mesh_vertices,
                 (double)levels[i].error, (double)levels[i].inflation);
+        if (measured)
+            fprintf(out, " %11.4g %11.4g", (double)levels[i].rms,
+                    (double)levels[i].furthest);
+        putc('\n', out);
+    }
 }
 
-void levels_json(json *j, const pmesh_level *levels, uint32_t count)
+void levels_json(json *j, const pmesh_level *levels, uint32_t count,
+                 bool measured)
 {
     json_open(j, "levels", '[');
     for (uint32_t i = 0; i < count; i++) {
@@ -33,6 +41,10 @@ void levels_json(json *j, const pmesh_level *levels, uint32_t count)
         json_count(j, "output_vertices", levels[i].vertices);
         json_float(j, "error", levels[i].error);
         json_float(j, "inflation", levels[i].inflation);
+        if (measured) {
+            json_float(j, "rms", levels[i].rms);
+            json_float(j, "furthest", levels[i].furthest);
+        }
         json_close(j);
     }
     json_close(j);

@@ -15,11 +15,13 @@
 uint32_t levels_within(const pmesh_level *levels, uint32_t count,
                        uint64_t bytes);
 
-void levels_print(FILE *out, const pmesh_level *levels, uint32_t count);
+void levels_print(FILE *out, const pmesh_level *levels, uint32_t count,
+                  bool measured);
 
 /* The array "levels": objects with bytes, faces, vertices (distinct
  * positions), output_vertices and error. */
-void levels_json(json *j, const pmesh_level *levels, uint32_t count);
+void levels_json(json *j, const pmesh_level *levels, uint32_t count,
+                 bool measured);
 
 const char *levels_profile_name(pmesh_profile profile);
 const char *levels_placement_name(pmesh_placement placement);

@@ -87,7 +87,7 @@ static void json_mesh(json *j, const scene_file *file, uint32_t i)
         json_count(j, "materials", mesh.material_count);
         json_count(j, "attributes", mesh.attribute_count);
         json_number(j, "step", mesh.grid.step);
-        levels_json(j, mesh.levels, mesh.level_count);
+        levels_json(j, mesh.levels, mesh.level_count, mesh.measured);
     }
     json_close(j);
 }

@@ -57,6 +57,16 @@ check 'more than there is to contract' 0 bake "$torus" -o o.pmesh --json \
     --base-faces 1
 ok 'is told' test "$(json end)" = exhausted
 ok 'and warned of' err 'nothing more can be contracted'
+check 'bake --measure' 0 bake "$torus" -o m.pmesh --json --measure
+ok 'levels are measured' out '"furthest": '
+check 'bake --measure -v' 0 bake "$torus" -o m.pmesh -v --measure
+ok 'and listed' out 'rms    furthest$'
+check 'verify a measured file' 0 verify m.pmesh
+check 'info of a measured file' 0 info --json m.pmesh
+ok 'info knows' test "$(json measured)" = true
+ok 'and tells' out '"rms": '
+check 'info of another' 0 info --json a.pmesh
+ok 'others are not' test "$(json measured)" = false
 check 'a cost with camera needs one' 2 bake "$torus" -o o.pmesh --cost camera
 check 'the others do not' 2 bake "$torus" -o o.pmesh --camera 1,2,3
 check 'it has three coordinates' 2 bake "$torus" -o o.pmesh --cost camera \

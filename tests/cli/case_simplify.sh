@@ -37,7 +37,7 @@ ok 'from pipe to pipe' cmp -s pipe.obj again.obj
 check 'of a .pmesh' 0 simplify "$baked" -q -o n.obj --faces 300
 ok 'of a .pmesh: its faces' between "$(faces n.obj)" 299 300
 
-for placement in optimal line midpoint endpoint; do
+for placement in optimal line midpoint endpoint volume hull; do
     check "--placement $placement" 0 simplify "$torus" -q -o "$placement.obj" \
         --faces 300 --placement $placement
 done

@@ -45,6 +45,7 @@ static const golden_case kept[] = {
     { "hub", GOLDEN_FAN, 55, 1, PMESH_QUALITY, PMESH_SUBSET, 4 },
     { "hubs", GOLDEN_SPINDLE, 60, 400, PMESH_BALANCED, PMESH_SUBSET, 9 },
     { "hubs-moving", GOLDEN_SPINDLE, 60, 1, PMESH_COMPACT, PMESH_OPTIMAL, 15 },
+    { "measured", SHAPE_FACETS, 8, 1, PMESH_BALANCED, PMESH_SUBSET, 6 },
     { "blocks", GOLDEN_CHANNELS, 40, 1700, PMESH_COMPACT, PMESH_OPTIMAL, 24 },
 };
 
@@ -108,6 +109,7 @@ static int bake(const golden_case *g, pmesh_topology topology,
     config.base_faces = g->base_faces;
     config.threads = threads;
     config.topology = topology;
+    config.measure = !strcmp(g->name, "measured");
     golden_mesh_make(&mesh, g->mesh, g->size);
     mesh.shape->input = mesh.input;
     const pmesh_status status = shape_bake(mesh.shape, &config, out, &report);

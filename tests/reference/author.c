@@ -139,7 +139,7 @@ static bool start(writer *w, const shape_bytes *file)
     h->block_splits = h->block_wedges = h->moved_corners = h->block_faces =
         MOST;
     h->level_count = 1;
-    h->lossless = h->draco = false;
+    h->lossless = h->draco = h->measured = false;
     w->r->in.author = &w->author;
     w->author.user = w;
     return w->r->has_base;

@@ -233,6 +233,7 @@ static pmesh_encoder_config choose_config(random_mesh *m)
     c.position_bits =
         one_in(m, 3) ? 14 : (uint8_t)(4 + below(m, 21));
     c.lossless = one_in(m, 3);
+    c.measure = one_in(m, 16);
     c.topology = (pmesh_topology)below(m, 3);
     if (c.topology != PMESH_TOPOLOGY_KEEP && one_in(m, 4))
         c.threshold = 0.2 * (1 + fraction(m));

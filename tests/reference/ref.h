@@ -103,6 +103,7 @@ typedef struct ref_level {
     uint64_t bytes, faces, vertices, wedges;
     float error;
     int inflation; /* in 1/256 */
+    uint64_t rms, most; /* measured */
 } ref_level;
 
 typedef struct ref_form {
@@ -112,7 +113,7 @@ typedef struct ref_form {
 typedef struct ref_header {
     uint64_t content_hash;
     int profile, position_bits;
-    bool moving, draco, lossless, joined;
+    bool moving, draco, lossless, joined, measured;
     double origin[3], step;
     int64_t bounds[3];
     uint64_t material_count, chunk_size, block_splits, block_wedges,

@@ -33,19 +33,22 @@ static uint64_t get_up_to(ref_bytes *in, uint64_t most, const char *rule)
 static void read_modes(ref_bytes *in, ref_header *h)
 {
     const uint64_t modes = ref_get(in, 1);
-    ref_check(in->r, (modes & 3) <= 2 && (modes & 40) != 40 && modes < 64,
+    ref_check(in->r, (modes & 3) <= 2 && (modes & 40) != 40 && modes < 128,
               "5.3: modes");
     h->profile = (int)(modes & 3);
     h->moving = modes & 4;
     h->draco = modes & 8;
     h->lossless = modes & 16;
     h->joined = modes & 32;
+    h->measured = modes & 64;
     if (h->moving)
         REF_SEEN(parents_move);
     if (h->lossless)
         REF_SEEN(lossless);
     if (h->joined)
         REF_SEEN(joined);
+    if (h->measured)
+        REF_SEEN(measured);
 }
 
 static void read_grid(ref_bytes *in, ref_header *h)
@@ -130,6 +133,9 @@ static void read_level(ref_bytes *in, ref_header *h, int i)
     l->inflation = (int)ref_get(in, 1);
     ref_check(in->r, l->inflation == 0 || i + 1 < h->level_count,
               "5.3: inflation");
+    l->rms = h->measured ? get_up_to(in, 1 << 30, "5.3: rms") : 0;
+    l->most = h->measured ? get_up_to(in, 1 << 30, "5.3: most") : 0;
+    ref_check(in->r, l->rms <= l->most, "5.3: rms");
     const uint64_t faces = l->faces - was->faces;
     const uint64_t vertices = l->vertices - was->vertices;
     const uint64_t wedges = l->wedges - was->wedges;

@@ -16,6 +16,7 @@
     X("5.3", parents_move)         \
     X("5.3", lossless)             \
     X("5.3", joined)               \
+    X("5.3", measured)             \
     X("5.3", attribute_normal)     \
     X("5.3", attribute_texture)    \
     X("5.3", attribute_colour)     \

@@ -288,7 +288,7 @@ TEST(simplify_rejects_what_makes_no_sense)
     lods *l = lods_sphere(8);
     const pmesh_simplify_options good = l->options;
 
-    l->options.placement = (pmesh_place)4;
+    l->options.placement = (pmesh_place)6;
     CHECK(lods_run(l) == PMESH_E_ARGUMENT);
     l->options = good;
     l->options.cost = PMESH_COST_CUSTOM; /* without a hook */
@@ -405,7 +405,7 @@ TEST(simplify_gives_the_same_bits_on_every_machine)
 
     l->options.faces = l->in.face_count / 5;
     CHECK(lods_run(l) == PMESH_OK);
-    CHECK(hash_result(l) == UINT64_C(0xf6ca8e0f2ececb61));
+    CHECK(hash_result(l) == UINT64_C(0x43a18ee26df446fa));
     lods_free(l);
     shape_free(shape);
 }

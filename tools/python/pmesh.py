@@ -41,7 +41,8 @@ _Attribute = _struct("Attribute", ("kind", c.c_int), ("set", c.c_uint8),
                      ("minimum", c.c_float * 4), ("scale", c.c_float * 4))
 _Level = _struct("Level", ("bytes", c.c_uint64), ("faces", c.c_uint32),
                  ("mesh_vertices", c.c_uint32), ("vertices", c.c_uint32),
-                 ("error", c.c_float), ("inflation", c.c_float))
+                 ("error", c.c_float), ("inflation", c.c_float),
+                 ("rms", c.c_float), ("furthest", c.c_float))
 _Error = _struct("Error", ("status", c.c_int), ("offset", c.c_uint64),
                  ("rule", c.c_char_p))
 _Header = _struct(
@@ -54,7 +55,7 @@ _Header = _struct(
     ("material_count", c.c_uint32), ("attribute_count", c.c_uint32),
     ("attributes", _Attribute * 8), ("level_count", c.c_uint32),
     ("levels", _Level * 64), ("exact_bytes", c.c_uint64),
-    ("memory", c.c_uint64))
+    ("memory", c.c_uint64), ("measured", c.c_int))
 _Progress = _struct("Progress", ("bytes", c.c_uint64), ("faces", c.c_uint32),
                     ("levels", c.c_uint32), ("exact_vertices", c.c_uint32),
                     ("complete", c.c_int))

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * enc_reach.h - how far the vertices of the full mesh are from a level.
+ *
+ * Each is followed from level to level: it was close to a vertex of the finer
+ * one, and the faces around the vertex that this has become, or around those
+ * from there on that are closer, are where it looks for one that is near
+ * enough. What it finds is never closer than the surface is. So the largest of
+ * all these distances is a bound for all the vertices, and tight but where the
+ * nearest face is not to be reached that way.
+ *
+ * A vertex need not look on once it is closer than another one, or than the
+ * bound of the level before: bounds shall not fall. So most look at few faces.
+ *
+ * In a joined mesh, vertices of pieces that have vanished do not count.
+ */
+#ifndef ENC_REACH_H
+#define ENC_REACH_H
+
+#include "encoder/enc_schedule.h"
+#include "encoder/enc_surface.h"
+
+typedef struct enc_reach {
+    const enc_mesh *mesh;
+    uint32_t *beside; /* per vertex of the full mesh: one of the level */
+    double most;      /* squared, in steps: the bound of the last level */
+} enc_reach;
+
+pmesh_status enc_reach_create(const enc_mesh *mesh, enc_reach *out);
+void enc_reach_destroy(enc_reach *reach);
+
+/* The bound for the surface as it is now, in steps; `made` led to it. */
+double enc_reach_bound(enc_reach *reach, const enc_surface *s,
+                       const enc_schedule *made);
+
+/* How far the ends of a pair, where they are now, will be from the faces around
+ * them when they are one at `place`; in steps. */
+double enc_reach_of_pair(const enc_surface *s, const enc_pair *pair,
+                         const int32_t place[3]);
+
+#endif
