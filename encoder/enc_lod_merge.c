@@ -55,6 +55,13 @@ void enc_lod_sum(const enc_lod_wedges *ws, const enc_lod_edge *e,
                  enc_quadric *total)
 {
     *total = (enc_quadric){ .c = 0 };
+    if (ws->active == 0 && ws->count == 2 && ws->kept_count == 1 &&
+        ws->fate[ws->list[1]] == ws->list[0]) { /* nearly all */
+        const double back[3] = { -e->half[0], -e->half[1], -e->half[2] };
+        enc_quadric_add(total, &ws->quadric[ws->list[0]], back);
+        enc_quadric_add(total, &ws->quadric[ws->list[1]], e->half);
+        return;
+    }
     for (uint32_t w = 0; w < ws->count; w++) {
         double tail[ENC_JOINT_TAIL_MAX], center[ENC_JOINT_MAX];
         const double none[3] = { 0, 0, 0 };

@@ -63,14 +63,16 @@ static bool within_reach(const double x[3], const double half[3])
 static bool optimal(const enc_quadric *q, const double half[3],
                     const enc_plane *keep, double limit, double x[3])
 {
+    enc_quadric_solution s;
     double y[3];
 
-    if (!enc_quadric_minimum(q, NULL, x) || !within_reach(x, half))
+    if (!enc_quadric_solve(q, &s) || !within_reach(s.least, half))
         return false;
+    memcpy(x, s.least, sizeof s.least);
     const double least = enc_quadric_value(q, x);
     if (!(least <= limit))
         return false;
-    if (keep && enc_quadric_minimum(q, keep, y) && within_reach(y, half)) {
+    if (keep && enc_quadric_least_on(&s, keep, y) && within_reach(y, half)) {
         const double value = enc_quadric_value(q, y);
         if (value <= VOLUME_GUARD * least && value <= limit)
             memcpy(x, y, sizeof y);

@@ -77,6 +77,14 @@ static void add_corner(const enc_lod_wedges *ws, uint32_t c)
     const uint32_t wedge = lod->corner_wedge[c];
     double place[2][3], value[2][ENC_JOINT_MAX];
 
+    if (ws->active == 0) {
+        double n[3];
+        enc_lod_normal(lod, c, at, n);
+        const double square = dot(n, n);
+        if (square > 0)
+            enc_quadric_add_plane(&ws->quadric[wedge], n, 0.5 * sqrt(square));
+        return;
+    }
     for (int k = 0; k < 2; k++) {
         const uint32_t other = corner[k + 1];
         const double *v = enc_lod_value(ws, lod->corner_wedge[other]);
@@ -116,10 +124,15 @@ static void hold_edge(const enc_lod_wedges *ws, uint32_t c, uint32_t far)
 
 void enc_lod_renew(enc_lod_wedges *ws, uint32_t v)
 {
-    enc_lod *lod = ws->lod;
+    enc_lod_survey(ws->lod, v);
+    enc_lod_sum_planes(ws, v);
+}
+
+void enc_lod_sum_planes(enc_lod_wedges *ws, uint32_t v)
+{
+    const enc_lod *lod = ws->lod;
     uint32_t c = lod->first_corner[v];
 
-    enc_lod_survey(lod, v);
     do {
         const uint32_t wedge = lod->corner_wedge[c];
         ws->quadric[wedge] = (enc_quadric){ .c = 0 };

@@ -72,6 +72,8 @@ static inline double *enc_lod_tail(const enc_lod_wedges *ws, uint32_t wedge)
 
 /* Surveys v and computes its wedges' quadrics from its faces. */
 void enc_lod_renew(enc_lod_wedges *ws, uint32_t v);
+/* The latter alone: v was surveyed last, or lies on no lines. */
+void enc_lod_sum_planes(enc_lod_wedges *ws, uint32_t v);
 
 /* Lists the wedges at both ends and finds out which belong together: their
  * fate is the same, and one of `kept` if there is one. What follows is about

@@ -2,6 +2,7 @@
 #include "encoder/enc_quadric.h"
 
 #include <stddef.h>
+#include <string.h>
 
 /* Relative to the trace, so that the result does not depend on the unit. A
  * hundred times more costs a tenth of the accuracy on smooth meshes; without
@@ -33,13 +34,11 @@ static double dot(const double a[3], const double b[3])
 }
 
 /* `weak`: the pull to the centre, as a share of the trace. */
-static bool minimum(const enc_quadric *q, double weak, const enc_plane *keep,
-                    double x[3])
+static bool solve(const enc_quadric *q, double weak, enc_quadric_solution *out)
 {
     const double trace = enc_quadric_trace(q);
-    double m[6], inverse[6];
+    double m[6];
 
-    x[0] = x[1] = x[2] = 0;
     if (!(trace > 0))
         return false;
     /* Scaled to trace 1: the determinant is then at least weak^3. */
@@ -48,27 +47,48 @@ static bool minimum(const enc_quadric *q, double weak, const enc_plane *keep,
     m[0] += weak;
     m[3] += weak;
     m[5] += weak;
-    const double det = adjugate(m, inverse);
+    const double det = adjugate(m, out->inverse);
     const double scale = 1 / (det * trace);
     const double goal[3] = { -q->b[0] * scale, -q->b[1] * scale,
                              -q->b[2] * scale };
 
     if (!(det > 0))
         return false;
-    multiply(inverse, goal, x);
-    if (keep) {
-        double step[3];
+    multiply(out->inverse, goal, out->least);
+    return true;
+}
 
-        multiply(inverse, keep->n, step);
-        const double slope = dot(keep->n, step);
-        if (!(slope > 0)) {
-            x[0] = x[1] = x[2] = 0;
-            return false;
-        }
-        const double t = (keep->offset - dot(keep->n, x)) / slope;
-        for (int i = 0; i < 3; i++)
-            x[i] += t * step[i];
-    }
+bool enc_quadric_solve(const enc_quadric *q, enc_quadric_solution *out)
+{
+    return solve(q, PULL, out);
+}
+
+bool enc_quadric_least_on(const enc_quadric_solution *s, const enc_plane *keep,
+                          double x[3])
+{
+    double step[3];
+
+    multiply(s->inverse, keep->n, step);
+    const double slope = dot(keep->n, step);
+    if (!(slope > 0))
+        return false;
+    const double t = (keep->offset - dot(keep->n, s->least)) / slope;
+    for (int i = 0; i < 3; i++)
+        x[i] = s->least[i] + t * step[i];
+    return true;
+}
+
+static bool minimum(const enc_quadric *q, double weak, const enc_plane *keep,
+                    double x[3])
+{
+    enc_quadric_solution s;
+
+    x[0] = x[1] = x[2] = 0;
+    if (!solve(q, weak, &s))
+        return false;
+    if (keep)
+        return enc_quadric_least_on(&s, keep, x);
+    memcpy(x, s.least, sizeof s.least);
     return true;
 }
 

@@ -109,6 +109,18 @@ static inline void enc_quadric_add_here(const enc_quadric *q,
 bool enc_quadric_minimum(const enc_quadric *q, const enc_plane *keep,
                          double x[3]);
 
+/* For several planes: what depends on the quadric alone. */
+typedef struct enc_quadric_solution {
+    double inverse[6]; /* up to a factor */
+    double least[3];   /* the place without a plane */
+} enc_quadric_solution;
+
+/* False: none that means anything, see above. */
+bool enc_quadric_solve(const enc_quadric *q, enc_quadric_solution *out);
+/* False, with x as it was: a plane without a normal. */
+bool enc_quadric_least_on(const enc_quadric_solution *s, const enc_plane *keep,
+                          double x[3]);
+
 /* Of the sum of both; the weak pull is measured by q alone, so that a strong
  * `pull` moves nothing along the directions that it leaves free. */
 bool enc_quadric_pulled_minimum(const enc_quadric *q, const enc_quadric *pull,

@@ -118,23 +118,26 @@ static bool is_legal(enc_lod_run *run, const enc_lod_offer *offer)
              !values_flip(run, offer->kept, offer->gone)));
 }
 
-static void renew(enc_lod_run *run, uint32_t v)
+/* inner: v has lost no line and got none, see contract(). */
+static void renew(enc_lod_run *run, uint32_t v, bool inner)
 {
-    if (run->options->metric == PMESH_MEMORYLESS)
-        enc_lod_renew(&run->pricer.wedges, v);
-    else
+    const bool known = inner && run->lod.lines[v] == 0;
+
+    if (!known)
         enc_lod_survey(&run->lod, v);
+    if (run->options->metric == PMESH_MEMORYLESS)
+        enc_lod_sum_planes(&run->pricer.wedges, v);
     enc_lod_sum_normals(&run->lod, v);
 }
 
-static void renew_around(enc_lod_run *run, uint32_t v)
+static void renew_around(enc_lod_run *run, uint32_t v, bool inner)
 {
     enc_lod *lod = &run->lod;
     uint32_t end = lod->first_end[v];
 
-    renew(run, v);
+    renew(run, v, inner);
     do
-        renew(run, lod->end_vertex[end ^ 1]);
+        renew(run, lod->end_vertex[end ^ 1], inner);
     while ((end = lod->end_next[end]) != lod->first_end[v]);
     run->tick++;
     price_around(run, v);
@@ -154,22 +157,38 @@ static void drop_dead(enc_lod_run *run, uint32_t gone)
     while ((end = run->lod.end_next[end]) != run->lod.first_end[gone]);
 }
 
+/* Without attributes and materials, all edges of a vertex on no lines have two
+ * faces, and so they have after a contraction that keeps the topology. */
+static bool stays_inner(const enc_lod_run *run, const enc_lod_offer *offer,
+                        bool joins)
+{
+    const enc_lod *lod = &run->lod;
+
+    return !joins && run->strictness != ENC_LOD_LOOSE && !lod->material &&
+           run->channels.count == 0 &&
+           (lod->lines[offer->gone] | lod->lines[offer->kept]) == 0;
+}
+
 static void contract(enc_lod_run *run, uint32_t pair,
                      const enc_lod_offer *offer, double error)
 {
+    const bool joins =
+        !enc_lod_share_face(&run->lod, offer->gone, offer->kept);
+    const bool inner = stays_inner(run, offer, joins);
+
     drop_dead(run, offer->gone);
     run->drift[offer->kept] = error;
     run->moved[offer->kept] = run->pricer.placement != PMESH_PLACE_ENDPOINT;
     run->error = fmax(run->error, error);
     enc_lod_pricer_move(&run->pricer, offer);
-    run->joined += !enc_lod_share_face(&run->lod, offer->gone, offer->kept);
+    run->joined += joins;
     enc_lod_contract(&run->lod, pair, offer->gone, offer->kept);
     enc_lod_settle(&run->pricer.wedges, offer->kept);
     enc_lod_delay_move(&run->delay, offer->kept);
     if (run->strictness == ENC_LOD_LOOSE)
         enc_lod_cancel(&run->lod, offer->kept);
     if (run->lod.first_corner[offer->kept] != ENC_NONE)
-        renew_around(run, offer->kept);
+        renew_around(run, offer->kept, inner);
 }
 
 /* True if the pair has been put back: it is taken when it comes again. */

@@ -198,7 +198,7 @@ static int bake_meshes(const scene_parts *parts, bake_mesh bake, void *user,
 }
 
 int bake_scene(const file_data *data, bake_mesh bake, void *user, bool glb,
-               bake_report *report, asset_bytes *out)
+               bool leave_images, bake_report *report, asset_bytes *out)
 {
     const bool standard = strcmp(report->input, "-") == 0;
     const double start = progress_clock();
@@ -206,12 +206,14 @@ int bake_scene(const file_data *data, bake_mesh bake, void *user, bool glb,
     asset_error error;
 
     if (!scene_parts_read(data->bytes, data->size,
-                          standard ? NULL : report->input, &parts, &error)) {
+                          standard ? NULL : report->input, leave_images,
+                          &parts, &error)) {
         report_asset_error(file_input_name(report->input), &error);
         return CMD_ASSET;
     }
     report->seconds_read += progress_clock() - start;
     report_note_lines(&report->notes, parts.notes.warnings);
+    report_note_lines(&report->notes, (const char *)parts.outside.data);
     asset_bytes *streams = calloc(parts.mesh_count, sizeof *streams);
     int code = CMD_IO;
     if (!streams)

@@ -17,8 +17,9 @@ typedef int (*bake_mesh)(void *user, const char *name, const asset *mesh,
  * Bakes the scene in `data` into `out`: each of its meshes by `bake`, then all
  * of them together. report->encode gets the sums and the scene's level table.
  * glb: into a GLB that shows the base meshes and holds the scene's file.
+ * leave_images: those in files beside the input stay there.
  */
 int bake_scene(const file_data *data, bake_mesh bake, void *user, bool glb,
-               bake_report *report, asset_bytes *out);
+               bool leave_images, bake_report *report, asset_bytes *out);
 
 #endif

@@ -22,6 +22,7 @@
 
 typedef struct options {
     const char *input, *output, *camera;
+    int textures; /* which of embed, external */
     int profile, placement, metric, cost, base, topology;
     int format; /* which of CMD_FORMATS; -1: not given */
     uint32_t position_bits, normal_bits, uv_bits, color_bits, generic_bits;
@@ -72,6 +73,10 @@ static const args_option option_table[] = {
     { .name = "merge", .kind = ARGS_FLAG, AT(merge),
       .help = "one mesh of all meshes of a glTF scene, without\n"
               "textures, nodes, skins and animations" },
+    { .name = "textures", .kind = ARGS_CHOICE, .value = "embed|external",
+      AT(textures),
+      .help = "images of a glTF scene that are files: copied into\n"
+              "the scene (default), or left where they are" },
     { .name = "no-attributes", .kind = ARGS_FLAG, AT(no_attributes),
       .help = "leave out normals, texture coordinates and colours" },
     { .name = "base-faces", .kind = ARGS_COUNT, .value = "N", .min = 1,
@@ -454,7 +459,8 @@ static int bake(options *o, const file_data *data, bake_report *report)
     int code = CMD_USAGE;
 
     if (is_scene(o, data, report->input))
-        code = bake_scene(data, bake_one, o, wants_glb(o), report, &bytes);
+        code = bake_scene(data, bake_one, o, wants_glb(o), o->textures == 1,
+                          report, &bytes);
     else if (wants_glb(o))
         report_error(file_input_name(report->input), NULL,
                      "only a glTF scene can be baked into a .glb");

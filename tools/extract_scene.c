@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "tools/cmd.h"
+#include "tools/extract_library.h"
 #include "tools/load.h"
 #include "tools/report.h"
 #include "tools/scene_file.h"
@@ -22,6 +23,7 @@ typedef struct job {
     uint64_t all_faces;
     pmesh_scene_shown shown;
     asset notes; /* its warnings */
+    extract_library library; /* of an OBJ in a file */
     uint64_t lod_faces[MAX_LODS];
     size_t lod_count;
 } job;
@@ -120,6 +122,39 @@ static bool encode_asset(const job *j, const asset *mesh, asset_bytes *out,
     return asset_write(&shown, j->request->format, out, error);
 }
 
+/* In OBJ texture coordinates run up the picture, in glTF down. */
+static void turn_texcoords(asset *mesh)
+{
+    for (size_t i = 0; i < mesh->attribute_count; i++) {
+        asset_attribute *a = &mesh->attributes[i];
+        for (size_t k = 0; a->kind == PMESH_TEXCOORD && k < a->count; k++)
+            a->values[k * a->components + 1] =
+                1 - a->values[k * a->components + 1];
+    }
+}
+
+/* All meshes as one, with what an OBJ needs beside it. */
+static bool merge(job *j, asset_bytes *out, asset *mesh, asset_error *error)
+{
+    const extract_request *r = j->request;
+    const bool obj = r->format == ASSET_OBJ;
+    const bool library = obj && strcmp(r->output, "-") != 0;
+
+    if (library && !extract_library_open(r->output, &j->library, error))
+        return false;
+    if (!scene_file_merge(&j->file, r->inflate,
+                          library ? &j->library.content : NULL, mesh, error))
+        return false;
+    if (j->library.content.missing)
+        asset_warn(&j->notes, "some images are not there, and the .mtl does "
+                   "without them");
+    if (obj)
+        turn_texcoords(mesh);
+    if (j->library.content.mtl.size > 0)
+        extract_library_put_name(&j->library, out);
+    return true;
+}
+
 /* "100%,25%,5%" as face budgets, each below the one before. */
 static bool read_lods(job *j, asset_error *error)
 {
@@ -165,7 +200,7 @@ static bool encode(job *j, const pmesh_decoder *one, asset_bytes *out,
         return asset_fail(error, "", "--lods, --meshopt and --draco need a "
                           "whole scene in a .glb or .gltf");
     if (!(one ? asset_from_decoder(one, &mesh, error)
-              : scene_file_merge(&j->file, r->inflate, &mesh, error)))
+              : merge(j, out, &mesh, error)))
         return false;
     bool good = !one || !r->inflate || asset_inflate(one, &mesh);
     if (good)
@@ -201,6 +236,10 @@ static int write_out(job *j, const pmesh_decoder *one)
     } else if (bytes.failed) {
         asset_fail(&error, "", "out of memory");
         code = input_failed(j, CMD_IO, &error);
+    } else if (j->library.content.mtl.size > 0 &&
+               !extract_library_write(&j->library, &error)) {
+        report_asset_error(j->library.path, &error);
+        code = CMD_IO;
     } else if (!file_write(r->output, bytes.data, bytes.size, &error)) {
         report_asset_error(file_output_name(r->output), &error);
         code = CMD_IO;
@@ -269,6 +308,7 @@ int extract_scene(const extract_request *request, const file_data *data)
 {
     job j = { .request = request, .data = data };
     const int code = run(&j);
+    extract_library_close(&j.library);
     scene_file_close(&j.file);
     return code;
 }

@@ -54,6 +54,7 @@ typedef struct gltf_source {
     const char *path; /* or NULL: no side files */
     bool everything;  /* all attributes and morph targets, in `sets`; else only
                          what the merge takes */
+    bool leave_images; /* those in files stay there */
 } gltf_source;
 
 /* Finds the JSON text; `warnings` takes what is odd but harmless. Nesting
@@ -70,6 +71,10 @@ bool gltf_uri_size(const gltf_source *source, const char *uri, size_t length,
                    uint64_t *size, asset_error *error);
 bool gltf_uri_read(const gltf_source *source, const char *uri, size_t length,
                    uint8_t *dst, uint64_t size, asset_error *error);
+
+/* The path that a URI means below the asset's folder, at most as long as it is;
+ * false if it means anything else. */
+bool gltf_uri_path(const char *uri, size_t length, char *path);
 
 /*
  * Bytes that one file may still expand to: compressed views, sparse accessors,

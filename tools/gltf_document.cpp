@@ -335,11 +335,16 @@ void taker::images()
         if (uri == image.value.end() || !uri->is_string())
             continue;
         const auto &name = uri->get_ref<const std::string &>();
-        asset_error error;
+        asset_error error = {};
         uint64_t size = 0;
         gltf_bytes bytes;
         bool ok = gltf_uri_size(&source, name.c_str(), name.size(), &size,
                                 &error) && size > 0;
+        if (ok && source.leave_images && name.compare(0, 5, "data:") != 0) {
+            parts.outside += "image " + std::to_string(i) + " stays in " +
+                             name + "\n";
+            continue;
+        }
         if (ok) {
             bytes.resize(size);
             ok = gltf_uri_read(&source, name.c_str(), name.size(),

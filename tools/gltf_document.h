@@ -24,6 +24,7 @@ struct gltf_parts {
     std::string document;
     std::vector<gltf_bytes> resources;
     size_t early = 0;
+    std::string outside; /* lines that name images left in their files */
 };
 
 /*

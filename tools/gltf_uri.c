@@ -128,6 +128,12 @@ static bool stays_below(const char *path)
     return true;
 }
 
+bool gltf_uri_path(const char *uri, size_t length, char *path)
+{
+    return !has_scheme(uri, length) && decode_path(uri, length, path) &&
+           stays_below(path);
+}
+
 /* The path of a side file, malloc'ed, or NULL. */
 static char *side_path(const gltf_source *source, const char *uri,
                        size_t length, asset_error *error)

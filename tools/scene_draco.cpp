@@ -5,7 +5,7 @@
  * another order and number.
  */
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 
 #include <draco/compression/expert_encode.h>
 
@@ -100,7 +100,7 @@ void set_grid(draco::ExpertEncoder *encoder, int number,
     const auto bits = static_cast<int>(data.grid.bits);
     if (data.component_type != GLTF_F32 || bits == 0)
         return; /* as they are */
-    if (data.grid.range > 0)
+    if (data.grid.range > 0 && std::isfinite(data.grid.range))
         encoder->SetAttributeExplicitQuantization(
             number, bits, static_cast<int>(data.components), data.grid.origin,
             data.grid.range);
@@ -127,8 +127,13 @@ void encode(const draco::Mesh &mesh, draco::ExpertEncoder *encoder,
 void read_back(const gltf_bytes &stream, scene_array *positions, size_t *faces)
 {
     const auto mesh = draco_decode(stream.data(), stream.size());
-    const std::vector<float> xyz = draco_values(*mesh, *mesh->attribute(0), 3);
+    const PointAttribute *from =
+        mesh->GetNamedAttribute(GeometryAttribute::POSITION);
+    const std::vector<float> xyz =
+        from ? draco_values(*mesh, *from, 3) : std::vector<float>();
 
+    if (xyz.empty())
+        throw std::runtime_error("Draco lost the positions of a primitive");
     *faces = mesh->num_faces();
     positions->count = mesh->num_points();
     positions->low.assign(xyz.begin(), xyz.begin() + 3);

@@ -59,8 +59,8 @@ void scene_file_close(scene_file *file)
     *file = (scene_file){ 0 };
 }
 
-bool scene_file_merge(const scene_file *file, bool inflate, asset *out,
-                      asset_error *error)
+bool scene_file_merge(const scene_file *file, bool inflate,
+                      scene_library *library, asset *out, asset_error *error)
 {
     asset_bytes glb = { 0 };
     asset notes = { 0 };
@@ -68,8 +68,9 @@ bool scene_file_merge(const scene_file *file, bool inflate, asset *out,
     *out = (asset){ 0 };
     const bool ok =
         scene_write(file->scene,
-                    (scene_style){ .glb = true, .inflate = inflate }, &glb,
-                    &notes, error) &&
+                    (scene_style){ .glb = true, .inflate = inflate,
+                                   .library = library },
+                    &glb, &notes, error) &&
         asset_read(glb.data, glb.size, ASSET_GLB, NULL, out, error);
     asset_bytes_free(&glb);
     return ok;
@@ -87,7 +88,7 @@ int scene_file_load(const file_data *data, asset *out, asset_error *error)
     }
     if (code == CMD_DONE) {
         pmesh_scene_refine(file.scene, NULL, NULL);
-        if (!scene_file_merge(&file, false, out, error))
+        if (!scene_file_merge(&file, false, NULL, out, error))
             code = file.progress.complete ? CMD_ASSET : CMD_STREAM;
     }
     if (code == CMD_DONE && !file.progress.complete)

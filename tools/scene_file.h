@@ -11,6 +11,7 @@
 #include "decoder/pmesh_scene.h"
 #include "tools/asset.h"
 #include "tools/file.h"
+#include "tools/scene_write.h"
 
 typedef struct scene_file {
     pmesh_scene *scene;
@@ -34,10 +35,11 @@ void scene_file_close(scene_file *file);
 
 /*
  * What is shown, as one mesh in the world: every instance with its materials,
- * without nodes, skins, animations. On failure *out is empty.
+ * without nodes, skins, animations. A library (NULL: none) is filled with what
+ * the materials look like. On failure *out is empty.
  */
-bool scene_file_merge(const scene_file *file, bool inflate, asset *out,
-                      asset_error *error);
+bool scene_file_merge(const scene_file *file, bool inflate,
+                      scene_library *library, asset *out, asset_error *error);
 
 /* A whole scene, or what is there of it, merged at full detail; the rules of
  * load_mesh_data(). */

@@ -208,6 +208,7 @@ void read(const gltf_source &source, holder *held, scene_parts *out)
         put(&out->resources[out->resource_count++], bytes.data(),
             bytes.size());
     out->early_count = parts.early;
+    put(&out->outside, parts.outside.c_str(), parts.outside.size() + 1);
 }
 
 bool is_list(const gltf_json &in, const char *name, size_t least)
@@ -271,13 +272,14 @@ bool scene_is_worth_it(const uint8_t *data, size_t size)
 }
 
 bool scene_parts_read(const uint8_t *data, size_t size, const char *path,
-                      scene_parts *out, asset_error *error)
+                      bool leave_images, scene_parts *out, asset_error *error)
 {
     gltf_source source = {};
 
     *out = {};
     source.path = path;
     source.everything = true;
+    source.leave_images = leave_images;
     if (!gltf_open(data, size, &source, &out->notes, error))
         return false;
     try {
@@ -304,5 +306,6 @@ void scene_parts_free(scene_parts *parts)
     free(parts->meshes);
     free(parts->resources);
     asset_bytes_free(&parts->document);
+    asset_bytes_free(&parts->outside);
     *parts = {};
 }

@@ -25,6 +25,7 @@ typedef struct scene_parts {
     asset_bytes *resources;
     size_t resource_count, early_count;
     asset notes; /* its warnings: what was left out, and what is not refined */
+    asset_bytes outside; /* text: a line for each image left in its file */
 } scene_parts;
 
 /* Whether a glTF file has anything that one merged mesh would lose: several
@@ -32,10 +33,10 @@ typedef struct scene_parts {
  * readable. */
 bool scene_is_worth_it(const uint8_t *data, size_t size);
 
-/* Takes a .gltf or .glb apart. Fails if there is no triangle in it. On failure
- * nothing is to be freed. */
+/* Takes a .gltf or .glb apart; with `leave_images` those in files stay there.
+ * Fails if there is no triangle in it. On failure nothing is to be freed. */
 bool scene_parts_read(const uint8_t *data, size_t size, const char *path,
-                      scene_parts *out, asset_error *error);
+                      bool leave_images, scene_parts *out, asset_error *error);
 
 void scene_parts_free(scene_parts *parts);
 

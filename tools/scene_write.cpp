@@ -457,6 +457,7 @@ static std::string base64(const gltf_bytes &in)
 void scene_writer::write(asset_bytes *out)
 {
     open();
+    library();
     resources();
     move_views();
     primitives();

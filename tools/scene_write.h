@@ -15,6 +15,25 @@
 extern "C" {
 #endif
 
+/* An image of a library: bytes of the scene, which is to live as long. */
+typedef struct scene_image {
+    size_t number;
+    const uint8_t *data;
+    size_t size;
+    const char *ending; /* "png" */
+} scene_image;
+
+/* Materials for OBJ, and the images that these name: STEM-NUMBER.ENDING. */
+typedef struct scene_library {
+    const char *stem;
+    asset_bytes mtl;
+    scene_image *images;
+    size_t image_count;
+    bool missing; /* some image is not there */
+} scene_library;
+
+void scene_library_free(scene_library *library);
+
 typedef struct scene_style {
     bool glb;     /* else .gltf, with a data URI */
     bool inflate; /* coarse levels, see pmesh_decoder_copy_inflated() */
@@ -26,6 +45,8 @@ typedef struct scene_style {
      * are shown where they start in it. */
     const asset_bytes *stream;
     const uint64_t *resource_offsets;
+    scene_library *library; /* NULL, or to be filled; materials get the names
+                               that it has for them */
 } scene_style;
 
 /*

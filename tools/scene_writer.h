@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* scene_writer.h - the state of scene_write(), private to its sources:
- * scene_write.cpp, for chains of levels scene_lods.cpp, and scene_draco.cpp. */
+ * scene_write.cpp, for chains of levels scene_lods.cpp, scene_draco.cpp, and for
+ * materials of OBJ scene_library.cpp. */
 #ifndef SCENE_WRITER_H
 #define SCENE_WRITER_H
 
@@ -60,6 +61,11 @@ private:
     void add_level(size_t level, const gltf_document &originals);
     void chain_node(size_t node, const std::vector<size_t> &chain);
     void use_extension(const char *name, bool required);
+    size_t image_of(const gltf_document &slot) const;
+    const char *library_image(size_t number);
+    void library_map(const char *word, const gltf_document &slot);
+    void library_material(const gltf_document &material);
+    void library();
     void primitives();
     void drop_animations();
     void missing_images(const std::vector<bool> &missing);

@@ -31,6 +31,19 @@ ok 'nodes have their names' grep -q '"near"' back.gltf
 ok 'the report counts faces' out '2 of 2 faces, 2 meshes'
 check 'to another format' 0 extract two.pmesh -q -o back.obj
 ok 'both meshes are there' test "$(faces back.obj)" = 2
+ok 'it names a library' grep -q '^mtllib back.mtl$' back.obj
+ok 'which has the material' grep -q '^newmtl unused$' back.mtl
+rm back.mtl
+check 'to standard output' 0 extract two.pmesh -q --format obj -o -
+ok 'there is no library' test ! -e back.mtl
+mkdir held.mtl
+check 'where a library cannot be' 1 extract two.pmesh -q -o held.obj
+ok 'the message names it' err 'held.mtl: '
+ok 'there is no mesh without it' test ! -e held.obj
+sed 's/{"name":"unused"}/{"name":"a"},{"name":"a"},{}/' two.gltf >names.gltf
+"$PMESH" bake names.gltf -q -o names.pmesh
+check 'materials of one name' 0 extract names.pmesh -q -o names.obj
+ok 'get several' test "$(grep newmtl names.mtl | sort -u | wc -l)" = 3
 check 'one mesh' 0 extract two.pmesh -q --mesh 1 -o back.obj
 ok 'one mesh is one' test "$(faces back.obj)" = 1
 check 'levels' 0 extract two.pmesh -q --lods 100%,50% -o x.glb
@@ -44,6 +57,29 @@ check 'Draco and meshopt' 2 extract two.pmesh --draco --meshopt -o x.glb
 check 'Draco into another format' 1 extract two.pmesh --draco -o x.obj
 check 'Draco' 0 extract two.pmesh --draco -q -o packed.glb
 check 'it is the scene' 0 compare two.gltf packed.glb
+# Two images, one in a file whose name has a blank, one that is not below.
+mkdir -p pictures/in && printf '\211PNG\r\n\032\n12345678' >'pictures/in/a b.png'
+cp 'pictures/in/a b.png' outside.png
+sed 's|"scene":0|"scene":0,"images":[{"uri":"in/a%20b.png"},\
+{"uri":"../outside.png"}],"textures":[{"source":0},{"source":1}]|
+s|{"name":"unused"}|{"name":"paint","pbrMetallicRoughness":\
+{"baseColorTexture":{"index":0}},"normalTexture":{"index":1}}|' \
+    two.gltf >pictures/in.gltf
+check 'textures that stay' 0 bake pictures/in.gltf -o out.pmesh \
+    --textures external --json
+ok 'the report names them' out 'image 0 stays in in/a%20b.png'
+ok 'and those out of reach' out 'image 1 stays outside: '
+ok 'they take no bytes' test "$(json resource_bytes)" = 0
+check 'the scene shows them' 0 extract out.pmesh -q -o pictures/out.gltf
+ok 'by their paths' grep -q '"uri": "in/a%20b.png"' pictures/out.gltf
+check 'bake that' 0 bake pictures/out.gltf -o in.pmesh --json
+ok 'which takes them in' test "$(json resource_bytes)" -gt 15
+check 'into a GLB' 0 bake pictures/in.gltf -q -o pictures/out.glb \
+    --textures external
+ok 'they stay there, too' grep -q 'in/a%20b.png' pictures/out.glb
+check 'as OBJ' 0 extract out.pmesh -q -o pictures/out.obj
+ok 'the library has the path' grep -q '^map_Kd in/a b.png$' pictures/out.mtl
+ok 'but none that leads out' test "$(grep -c outside pictures/out.mtl)" = 0
 check 'a GLB with a scene' 0 bake two.gltf -q -o tail.glb
 ok 'info sees the scene' "$PMESH" info --json tail.glb
 check 'verify it' 0 verify tail.glb

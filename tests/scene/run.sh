@@ -128,6 +128,7 @@ packs_by_draco() {
 
 merges_into_other_formats() {
     "$PMESH" extract -q "$dir/a.pmesh" -o "$dir/full.obj" &&
+        python3 $here/mtl.py "$model" "$dir/full.glb" "$dir/full.obj" &&
         "$PMESH" compare "$model" "$dir/full.obj" --samples 2000 &&
         "$PMESH" extract -q "$dir/a.pmesh" --mesh 0 -o "$dir/one.ply"
 }

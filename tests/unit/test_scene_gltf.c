@@ -105,7 +105,7 @@ static bool takes_apart(const char *text)
     scene_parts parts;
     asset_error error = { "", "" };
     const bool ok = scene_parts_read((const uint8_t *)text, strlen(text), NULL,
-                                     &parts, &error);
+                                     false, &parts, &error);
     CHECK(ok || error.what[0] != '\0');
     if (ok)
         scene_parts_free(&parts);

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * scene_library.cpp - a scene's materials for OBJ: a .mtl text, and the images
+ * that it names. Names of materials become unique, for OBJ knows them by name.
+ */
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <set>
+
+#include "tools/scene_writer.h"
+
+namespace {
+
+const gltf_document nothing = gltf_document::object();
+
+const gltf_document &member(const gltf_document &of, const char *name)
+{
+    const auto found = of.is_object() ? of.find(name) : of.end();
+    return found != of.end() ? *found : nothing;
+}
+
+double factor(const gltf_document &of, const char *name, double fallback)
+{
+    const gltf_document &value = member(of, name);
+    return value.is_number() ? value.get<double>() : fallback;
+}
+
+/* A colour's component; the fallback if there is no such list. */
+double component(const gltf_document &of, const char *name, size_t k,
+                 double fallback)
+{
+    const gltf_document &list = member(of, name);
+    return list.is_array() && k < list.size() && list[k].is_number()
+               ? list[k].get<double>()
+               : fallback;
+}
+
+void put_number(asset_bytes *out, double value)
+{
+    char text[40];
+    const size_t n =
+        asset_number_print_float(text + 1, static_cast<float>(value));
+    text[0] = ' ';
+    asset_put(out, text, n + 1);
+}
+
+void put_color(asset_bytes *out, const char *word, const gltf_document &of,
+               const char *name, double fallback)
+{
+    asset_printf(out, "%s", word);
+    for (size_t k = 0; k < 3; k++)
+        put_number(out, component(of, name, k, fallback));
+    asset_printf(out, "\n");
+}
+
+/* By the first bytes: names and types are often wrong or not there. */
+const char *ending_of(const uint8_t *data, size_t size)
+{
+    static const struct {
+        const char *magic, *ending;
+    } kinds[] = { { "\x89PNG", "png" }, { "\xff\xd8\xff", "jpg" },
+                  { "RIFF", "webp" },   { "\xabKTX", "ktx2" },
+                  { "DDS ", "dds" } };
+    for (const auto &kind : kinds)
+        if (size > 4 && memcmp(data, kind.magic, strlen(kind.magic)) == 0)
+            return kind.ending;
+    return "bin";
+}
+
+/* Control characters would end a line. */
+std::string name_of(const gltf_document &material, size_t number)
+{
+    const gltf_document &name = member(material, "name");
+    std::string text = name.is_string() ? name.get<std::string>() : "";
+
+    for (char &c : text)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
+            c = '_';
+    return text.empty() ? "material_" + std::to_string(number) : text;
+}
+
+/* Of an image that is a file; false if no line can name it. */
+bool put_path(asset_bytes *out, const char *word, const std::string &uri)
+{
+    std::vector<char> path(uri.size() + 1);
+
+    if (!gltf_uri_path(uri.c_str(), uri.size(), path.data()))
+        return false;
+    asset_printf(out, "%s %s\n", word, path.data());
+    return true;
+}
+
+} // namespace
+
+/* The image of a texture, or SIZE_MAX; extensions name others of theirs. */
+size_t scene_writer::image_of(const gltf_document &slot) const
+{
+    const gltf_document &index = member(slot, "index");
+    const gltf_document &textures = member(doc, "textures");
+
+    if (!index.is_number_unsigned() || index >= textures.size())
+        return SIZE_MAX;
+    const gltf_document &texture = textures.at(index.get<size_t>());
+    const gltf_document *source = &member(texture, "source");
+    for (const gltf_document &extension : member(texture, "extensions"))
+        if (!source->is_number_unsigned())
+            source = &member(extension, "source");
+    return source->is_number_unsigned() &&
+                   *source < member(doc, "images").size()
+               ? source->get<size_t>()
+               : SIZE_MAX;
+}
+
+/* The image's bytes, added to the library once; its ending, or nullptr. */
+const char *scene_writer::library_image(size_t number)
+{
+    scene_library *to = style.library;
+    const gltf_document &image = doc["images"].at(number);
+
+    for (size_t i = 0; i < to->image_count; i++)
+        if (to->images[i].number == number)
+            return to->images[i].ending;
+    if (!image.contains("bufferView"))
+        return nullptr;
+    const gltf_document &view =
+        doc["bufferViews"].at(image["bufferView"].get<size_t>());
+    const pmesh_scene_bytes all =
+        pmesh_scene_resource(scene, view.at("buffer").get<uint32_t>());
+    const auto offset = view.value("byteOffset", uint64_t{ 0 });
+    const auto size = view.at("byteLength").get<uint64_t>();
+    if (!all.data || offset > all.arrived || size > all.arrived - offset)
+        return nullptr;
+    scene_image *grown = static_cast<scene_image *>(
+        realloc(to->images, (to->image_count + 1) * sizeof *to->images));
+    if (!grown)
+        throw std::bad_alloc();
+    const uint8_t *data = static_cast<const uint8_t *>(all.data) + offset;
+    to->images = grown;
+    to->images[to->image_count++] = { number, data, static_cast<size_t>(size),
+                                      ending_of(data,
+                                                static_cast<size_t>(size)) };
+    return to->images[to->image_count - 1].ending;
+}
+
+void scene_writer::library_map(const char *word, const gltf_document &slot)
+{
+    scene_library *to = style.library;
+    const size_t image = image_of(slot);
+    const char *ending = image == SIZE_MAX ? nullptr : library_image(image);
+    const gltf_document &uri =
+        image == SIZE_MAX ? nothing : member(doc["images"].at(image), "uri");
+
+    if (ending)
+        asset_printf(&to->mtl, "%s %s-%zu.%s\n", word, to->stem, image,
+                     ending);
+    else if (uri.is_string() && put_path(&to->mtl, word, uri))
+        return;
+    else if (image != SIZE_MAX)
+        to->missing = true;
+}
+
+void scene_writer::library_material(const gltf_document &material)
+{
+    asset_bytes *out = &style.library->mtl;
+    const gltf_document &pbr = member(material, "pbrMetallicRoughness");
+
+    asset_printf(out, "\nnewmtl %s\n",
+                 material["name"].get<std::string>().c_str());
+    put_color(out, "Kd", pbr, "baseColorFactor", 1);
+    put_color(out, "Ke", material, "emissiveFactor", 0);
+    const bool blended = member(material, "alphaMode") == "BLEND";
+    asset_printf(out, "d");
+    put_number(out, blended ? component(pbr, "baseColorFactor", 3, 1) : 1);
+    asset_printf(out, "\nPr");
+    put_number(out, factor(pbr, "roughnessFactor", 1));
+    asset_printf(out, "\nPm");
+    put_number(out, factor(pbr, "metallicFactor", 1));
+    asset_printf(out, "\n");
+    library_map("map_Kd", member(pbr, "baseColorTexture"));
+    library_map("map_Ke", member(material, "emissiveTexture"));
+    library_map("norm", member(material, "normalTexture"));
+}
+
+/* Before views move: they still name resources. */
+void scene_writer::library()
+{
+    std::set<std::string> taken;
+
+    if (!style.library || !doc.contains("materials"))
+        return;
+    gltf_document &materials = doc["materials"];
+    for (size_t i = 0; i < materials.size(); i++) {
+        std::string name = name_of(materials[i], i);
+        while (!taken.insert(name).second)
+            name += "_" + std::to_string(i);
+        materials[i]["name"] = name;
+        library_material(materials[i]);
+    }
+    if (style.library->mtl.failed)
+        throw std::bad_alloc();
+}
+
+void scene_library_free(scene_library *library)
+{
+    asset_bytes_free(&library->mtl);
+    free(library->images);
+    library->images = nullptr;
+    library->image_count = 0;
+}
