@@ -209,7 +209,8 @@ bench-%: bench-deps
 bench-web: web-deps
 $(bench_programs): $(B)/bench_%: $(B)/tests/bench/bench_%.o
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bench_libs) -o $@
-$(B)/bench_attributes: $(shared_obj) $(B)/libpmesh.a
+$(B)/bench_attributes: $(B)/tests/bench/attribute_measure.o $(shared_obj) \
+  $(B)/libpmesh.a
 $(B)/bench_attributes: bench_libs := $(bridge_libs)
 $(B)/bench_decode $(B)/bench_refine: $(B)/libpmesh-dec.a
 $(B)/bench_decode: bench_libs := -ldraco
