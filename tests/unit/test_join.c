@@ -11,6 +11,7 @@
 #include "decoder/pmesh_decode.h"
 #include "encoder/enc_stream.h"
 #include "format/alloc.h"
+#include "tests/unit/random_cut.h"
 #include "tests/unit/shapes.h"
 #include "tests/unit/test.h"
 
@@ -122,20 +123,6 @@ static bool answer_splits(void *user, uint32_t v)
     return t->wide ? v == 0 || v % 2 : below(t, 3) > 0;
 }
 
-static pmesh_cut any_cut(inventor *t, const pmesh_ring *ring)
-{
-    for (;;) {
-        pmesh_cut cut = { below(t, ring->count + 1),
-                          below(t, ring->count + 1) };
-        if (cut.first == ring->count)
-            cut.first = PMESH_NONE;
-        if (cut.end == ring->count)
-            cut.end = PMESH_NONE;
-        if (pmesh_cut_legal(ring, cut))
-            return cut;
-    }
-}
-
 static uint32_t fans_of(const pmesh_mesh *m, uint32_t v)
 {
     uint32_t count = 0;
@@ -158,7 +145,7 @@ static void answer_part(void *user, uint32_t v, const pmesh_fans *fans,
         if (most)
             p->way[i] = PMESH_FAN_CUT;
         if (p->way[i] == PMESH_FAN_CUT)
-            p->cut[i] = any_cut(t, &fans->ring[i]);
+            p->cut[i] = random_cut(&t->seed, &fans->ring[i]);
         v_has |= p->way[i] != PMESH_FAN_MOVES;
         u_has |= p->way[i] != PMESH_FAN_STAYS;
     }

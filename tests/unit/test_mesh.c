@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 
+#include "tests/unit/random_cut.h"
+#include "tests/unit/shapes.h"
 #include "tests/unit/test.h"
 
 enum { CAPACITY = 600 };
@@ -48,32 +50,12 @@ static store *triangle(void)
     return store_make(3, 1, corners, twins);
 }
 
-static uint32_t random_below(uint32_t *seed, uint32_t n)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (uint32_t)((uint64_t)(*seed >> 8) * n >> 24);
-}
-
-static pmesh_cut random_cut(uint32_t *seed, const pmesh_ring *ring)
-{
-    for (;;) {
-        pmesh_cut cut = { random_below(seed, ring->count + 1),
-                          random_below(seed, ring->count + 1) };
-        if (cut.first == ring->count)
-            cut.first = PMESH_NONE;
-        if (cut.end == ring->count)
-            cut.end = PMESH_NONE;
-        if (pmesh_cut_legal(ring, cut))
-            return cut;
-    }
-}
-
 static bool grows_soundly(store *s, uint32_t seed)
 {
     bool sound = true;
     while (sound && s->mesh.vertex_count < CAPACITY) {
         pmesh_ring ring;
-        const uint32_t v = random_below(&seed, s->mesh.vertex_count);
+        const uint32_t v = shape_random(&seed, s->mesh.vertex_count);
         if (!pmesh_ring_gather(&s->mesh, v, &ring))
             continue;
         pmesh_mesh_split(&s->mesh, v, &ring, random_cut(&seed, &ring));
