@@ -148,7 +148,8 @@ typedef struct pmesh_encoder_config {
     pmesh_cost_hook cost_hook; /* of PMESH_COST_CUSTOM; asked about directed
                                   contractions: the pair's second vertex goes */
     void *cost_user;           /* of the hook */
-    uint32_t threads;          /* 0 or 1: this thread only */
+    uint32_t threads;          /* at most so many; this version works in
+                                  the calling thread alone */
     pmesh_progress progress;   /* NULL: none */
     void *progress_user;
 } pmesh_encoder_config;

@@ -154,7 +154,7 @@ static const args_option option_table[] = {
       AT(input), .help = "the same as IN" },
     { .name = "threads", .letter = 'j', .kind = ARGS_COUNT, .value = "N",
       .min = 1, .max = 256, AT(threads),
-      .help = "threads to use; the file does not depend on it" },
+      .help = "at most N threads; this version works with one" },
     { .name = "json", .kind = ARGS_FLAG, AT(json),
       .help = "report as one JSON object on stdout" },
     { .name = "progress", .kind = ARGS_FLAG, AT(progress),
@@ -178,7 +178,7 @@ static const args_command command = {
         "other face is lost. The same input and\noptions give the same "
         "bytes.\n\n"
         "  pmesh bake bunny.obj -o bunny.pmesh\n"
-        "  pmesh bake scan.ply -o scan.pmesh --position-bits 16 -j 4\n"
+        "  pmesh bake scan.ply -o scan.pmesh --position-bits 16\n"
         "  xz -dc part.stl.xz | pmesh bake - --format stl -o part.pmesh\n",
 };
 
