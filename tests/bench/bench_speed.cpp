@@ -83,7 +83,7 @@ double cpu_ms()
     return clock_ms(CLOCK_PROCESS_CPUTIME_ID);
 }
 
-/* ---- memory --------------------------------------------------------------- */
+/* ---- memory ---- */
 
 /* What our allocator hooks have given out, now and at most. */
 struct Ledger {
@@ -104,7 +104,7 @@ struct Ledger {
     }
 };
 
-/* ---- ours ----------------------------------------------------------------- */
+/* ---- ours ---- */
 
 /* Positions and faces of a mesh, in all the forms that somebody asks for. */
 struct Model {
@@ -293,7 +293,7 @@ double parse(const Bytes &file, asset_format format)
     return ms;
 }
 
-/* ---- others --------------------------------------------------------------- */
+/* ---- others ---- */
 
 using Simplify = Soup (*)(const Soup &, std::size_t, double *);
 
@@ -372,7 +372,7 @@ double parse_tinygltf(const Bytes &file)
     return cpu_ms() - start;
 }
 
-/* ---- input ---------------------------------------------------------------- */
+/* ---- input ---- */
 
 Model model_of(const std::string &name, const asset &mesh)
 {
@@ -439,7 +439,7 @@ Bytes ascii_ply(const Model &m)
     return Bytes(text.begin(), text.end());
 }
 
-/* ---- one model ------------------------------------------------------------ */
+/* ---- one model ---- */
 
 double median(std::vector<double> values)
 {
@@ -555,7 +555,9 @@ void measure(int rounds, const Model &m, const Bytes &obj)
     contest.enter("simplify", [&] { return simplify(m); });
     contest.enter("bake", [&] { return bake(m); });
     contest.enter("cgal-lt", [&] { return peer(m, simplify_lindstrom_turk); });
-    contest.enter("cgal-gh", [&] { return peer(m, simplify_garland_heckbert); });
+    contest.enter("cgal-gh", [&] {
+        return peer(m, simplify_garland_heckbert);
+    });
     contest.enter("openmesh", [&] { return peer(m, simplify_openmesh); });
     contest.enter("wall-1", [&] { return bake_wall(m, 1); });
     contest.enter("wall-2", [&] { return bake_wall(m, 2); });
@@ -620,7 +622,7 @@ void measure_file(int rounds, const std::string &path)
     file_free(&data);
 }
 
-/* ---- scaling -------------------------------------------------------------- */
+/* ---- scaling ---- */
 
 void scale_line(const Model &m, const char *what, double ms, std::size_t most)
 {
