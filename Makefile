@@ -246,20 +246,26 @@ bench: bench-all
 ## bench-attributes: attributes of simplified meshes, against meshoptimizer
 ## bench-refine: time and uploads of moving among decoded splits
 ## bench-web: time to decode in a browser, against Draco and native code
+## bench-speed: speed and memory against other programs, and what they must be
+## bench-scale: time and memory of 70,000 to 8 million faces (takes long)
 ## bench-time: time and memory of the commands
-bench_programs := $(addprefix $(B)/bench_,attributes decode qem refine simplify)
+bench_programs := $(addprefix $(B)/bench_,attributes decode qem refine simplify speed)
 bench-%: bench-deps
 	+@$(submake) all $(bench_programs)
 	@PMESH=$(B)/pmesh tests/bench/$*.sh
 bench-web: web-deps
 $(bench_programs): $(B)/bench_%: $(B)/tests/bench/bench_%.o
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bench_libs) -o $@
-$(B)/bench_attributes: $(B)/tests/bench/attribute_measure.o $(shared_obj) \
-  $(B)/libpmesh.a
-$(B)/bench_attributes: bench_libs := $(bridge_libs)
+$(B)/bench_attributes: $(B)/tests/bench/attribute_measure.o
+$(B)/bench_simplify $(B)/bench_speed: $(B)/tests/bench/peers.o
+$(B)/bench_attributes $(B)/bench_speed: $(shared_obj) $(B)/libpmesh.a
 $(B)/bench_decode $(B)/bench_refine: $(B)/libpmesh-dec.a
+openmesh := -lOpenMeshTools -lOpenMeshCore
+$(B)/bench_attributes: bench_libs := $(bridge_libs)
 $(B)/bench_decode: bench_libs := -ldraco
-$(B)/bench_simplify: bench_libs := -lmeshoptimizer -lgmp -lmpfr
+$(B)/bench_simplify: bench_libs := $(openmesh) -lmeshoptimizer -lgmp -lmpfr
+$(B)/bench_speed: bench_libs := $(bridge_libs) $(openmesh) -ltinyobjloader \
+  -lgmp -lmpfr
 
 ## deps: install the Debian packages that building and testing need
 deps:

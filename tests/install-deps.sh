@@ -47,6 +47,8 @@ group_bench() {
     need draco program draco_encoder
     need libcgal-dev header CGAL/version.h
     need libeigen3-dev header eigen3/Eigen/Core
+    need libopenmesh-dev header OpenMesh/Core/System/config.h
+    need libtinyobjloader-dev header tiny_obj_loader.h
     need python3 program python3
     need time test -x /usr/bin/time
 }
