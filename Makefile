@@ -79,10 +79,11 @@ $(B)/reference_agree: $(call obj,$(addprefix tests/,$(addprefix reference/,\
   $(B)/libpmesh.a
 $(fuzzers): $(B)/fuzz/%: $(B)/tests/fuzz/target_%.o $(call obj,$(addprefix \
   tests/,$(addprefix fuzz/,fuzz.c pieces.c use.c) $(addprefix unit/,faces.c \
-  float_faces.c shapes.c)) $(if $(libfuzzer),,tests/fuzz/driver.c) tools/trig.c) \
+  float_faces.c lods.c shapes.c)) $(if $(libfuzzer),,tests/fuzz/driver.c) tools/trig.c) \
   $(B)/libpmesh.a
 # Those of the libraries alone are C alone, as MSan wants it.
-$(filter-out $(B)/fuzz/dec_% %/coder %/roundtrip,$(fuzzers)): \
+$(filter-out $(B)/fuzz/dec_% %/coder %/roundtrip \
+  %/simplify,$(fuzzers)): \
   $(B)/tests/fuzz/import.o $(shared_obj)
 # Where the checks are on, and random bytes are to be refused, nobody mends.
 $(if $(libfuzzer),$(filter-out %/dec_raw,$(filter $(B)/fuzz/dec_% \
