@@ -44,6 +44,7 @@ golden := $(B)/golden_bake $(B)/golden_decode
 reference := $(B)/reference $(B)/reference_agree
 reference_obj := $(call obj,$(wildcard tests/reference/ref_*.c)) \
   $(B)/reference_tables.o
+corrupt := $(B)/corrupt
 libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
 
 ## all: libraries and program (default)
@@ -63,6 +64,9 @@ $(B)/reference_agree: $(call obj,$(addprefix tests/,$(addprefix reference/,\
   agree.c author.c chunks.c compare.c mutate.c random_mesh.c) \
   golden/golden_mesh.c unit/shapes.c) tools/trig.c) $(reference_obj) \
   $(B)/libpmesh.a
+$(corrupt): $(call obj,$(wildcard tests/corrupt/*.c) \
+  tests/reference/chunks.c tests/golden/golden_mesh.c tests/unit/shapes.c) \
+  $(reference_obj) $(shared_obj) $(B)/libpmesh.a
 $(libs) $(B)/pmesh $(B)/unit $(B)/train: $(B)/objects.list
 
 inputs = $(filter %.o %.a,$^)
@@ -71,7 +75,7 @@ $(B)/%.a:
 	$(quiet)rm -f $@ && $(AR) rcs $@ $(inputs)
 $(B)/%.so:
 	$(quiet)$(CC) -shared -Wl,-soname,$(soname) $(inputs) $(link_flags) -lm -o $@
-$(B)/pmesh $(B)/unit $(B)/train:
+$(B)/pmesh $(B)/unit $(B)/train $(corrupt):
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
 
 $(golden) $(reference):
@@ -122,7 +126,7 @@ test: deps
 
 ## check: the same without installing anything
 check:
-	+@$(submake) all $(B)/unit $(golden) $(reference)
+	+@$(submake) all $(B)/unit $(golden) $(reference) $(corrupt)
 	@tests/run.sh $(B)
 
 ## unit: only the unit tests; T=name selects some

@@ -1,0 +1,3 @@
+/* SPDX-License-Identifier: MIT */
+#include "tests/corrupt/corrupt.h"
+void content_cases(void) {}
