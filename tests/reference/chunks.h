@@ -13,6 +13,7 @@ enum {
     CHUNK_BASE = 2,
     CHUNK_LAST = 4, /* a block */
     CHUNK_END = 5,
+    CHUNK_POSITIONS = 7,
     CHUNK_SCENE = 8
 };
 
