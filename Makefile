@@ -31,7 +31,9 @@ cxx_flags := -std=c++17 $(shared_flags) -Wall -Wextra $(CPPFLAGS) $(CXXFLAGS)
 link_flags := -pthread $(filter -fsanitize=%,$(opt_$(config))) $(LDFLAGS)
 posix := -D_POSIX_C_SOURCE=200809L
 cgal := -isystem /usr/include/eigen3 -Wno-maybe-uninitialized
-bridge_libs := -ldraco -lmeshoptimizer -lz
+# Draco's archive, if there is one: its library allocates before main().
+bridge_libs := $(if $(filter /%,$(shell $(CXX) -print-file-name=libdraco.a)),\
+  -l:libdraco.a,-ldraco) -lmeshoptimizer -lz
 
 units ?= $(wildcard tests/unit/*.c)
 obj = $(patsubst %,$(B)/%.o,$(basename $(1)))

@@ -10,7 +10,14 @@
 
 namespace {
 
-const gltf_json no_items = gltf_json::array();
+/* Made when it is first asked for: before main() nobody tells of memory that
+ * lacks. */
+const gltf_json &no_items()
+{
+    static const gltf_json none = gltf_json::array();
+    return none;
+}
+
 const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
 
 std::string quoted(const std::string &name)
@@ -80,7 +87,7 @@ const gltf_json &builder::list(const char *name) const
 {
     const auto found = in.find(name);
     if (found == in.end())
-        return no_items;
+        return no_items();
     if (!found->is_array())
         throw std::runtime_error(std::string(name) + " is not a list");
     return *found;
