@@ -178,6 +178,11 @@ check-reference:
 	@PMESH=$(B)/pmesh FILES=10000 MENDED=2000 DAMAGED=500 \
 	  tests/reference/run.sh
 
+## check-faults: every allocation fails, 200 kills (tests/faults)
+check-faults:
+	+@$(submake) $(B)/pmesh
+	@PMESH=$(B)/pmesh KILLS=200 STEP=1 tests/faults/run.sh
+
 ## check-gltf: scenes of tests/scene by Khronos' glTF validator (npm)
 check-gltf:
 	+@$(submake) $(B)/pmesh
@@ -287,6 +292,6 @@ help:
 
 .PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
 .PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps web-deps
-.PHONY: check-web install
+.PHONY: check-web check-faults install
 .PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -103,7 +103,7 @@ gltf_item builder::item(const char *name, size_t number) const
 
 uint32_t builder::add(const char *name, gltf_json value)
 {
-    out[name].push_back(std::move(value));
+    gltf_list(out, name).push_back(std::move(value));
     return static_cast<uint32_t>(out[name].size() - 1);
 }
 
@@ -404,7 +404,7 @@ gltf_json builder::primitive(const gltf_item &from)
         for (const gltf_json &target : *targets) {
             if (!target.is_object())
                 from.fail("a target is not an object");
-            to["targets"].push_back(
+            gltf_list(to, "targets").push_back(
                 attributes(from, target, gltf_json::object()));
         }
     }
@@ -473,7 +473,7 @@ void builder::node(const gltf_item &from)
             from.fail("children is not a list");
         to["children"] = gltf_json::array();
         for (const gltf_json &child : *children)
-            to["children"].push_back(
+            gltf_list(to, "children").push_back(
                 gltf_to_id(from, "child", child, list("nodes").size()));
     }
     add("nodes", std::move(to));

@@ -9,6 +9,7 @@
 #include <new>
 #include <utility>
 
+#include "tools/exhausted.h"
 #include "tools/gltf_document.h"
 #include "tools/pack.h"
 
@@ -280,6 +281,8 @@ bool scene_is_worth_it(const uint8_t *data, size_t size)
         return is_list(in, "meshes", 2) || is_list(in, "scenes", 2) ||
                is_list(in, "nodes", 2) || in.contains("extensions") ||
                has_looks(in) || has_own_attributes(in);
+    } catch (const std::bad_alloc &) {
+        exhausted_end(); /* "no" would be another file, without a word */
     } catch (...) {
         return false;
     }
