@@ -47,6 +47,7 @@ reference := $(B)/reference $(B)/reference_agree
 reference_obj := $(call obj,$(wildcard tests/reference/ref_*.c)) \
   $(B)/reference_tables.o
 corrupt := $(B)/corrupt
+damage := $(B)/damage
 libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
 
 ## all: libraries and program (default)
@@ -66,6 +67,8 @@ $(B)/reference_agree: $(call obj,$(addprefix tests/,$(addprefix reference/,\
   agree.c author.c chunks.c compare.c mutate.c random_mesh.c) \
   golden/golden_mesh.c unit/shapes.c) tools/trig.c) $(reference_obj) \
   $(B)/libpmesh.a
+$(damage): $(call obj,tests/damage/damage.c tests/unit/shapes.c tools/trig.c) \
+  $(B)/libpmesh.a
 $(corrupt): $(call obj,$(wildcard tests/corrupt/*.c) \
   tests/reference/chunks.c tests/golden/golden_mesh.c tests/unit/shapes.c) \
   $(reference_obj) $(shared_obj) $(B)/libpmesh.a
@@ -80,7 +83,7 @@ $(B)/%.so:
 $(B)/pmesh $(B)/unit $(B)/train $(corrupt):
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
 
-$(golden) $(reference):
+$(golden) $(reference) $(damage):
 	$(quiet)$(CC) $(inputs) $(link_flags) -lm -o $@
 
 $(B)/%.o: %.c $(B)/c.flags
@@ -128,7 +131,7 @@ test: deps
 
 ## check: the same without installing anything
 check:
-	+@$(submake) all $(B)/unit $(golden) $(reference) $(corrupt)
+	+@$(submake) all $(B)/unit $(golden) $(reference) $(corrupt) $(damage)
 	@tests/run.sh $(B)
 
 ## unit: only the unit tests; T=name selects some
@@ -177,6 +180,11 @@ check-reference:
 	+@$(submake) $(B)/pmesh $(reference)
 	@PMESH=$(B)/pmesh FILES=10000 MENDED=2000 DAMAGED=500 \
 	  tests/reference/run.sh
+
+## check-damage: every prefix of 30 files, 500,000 flipped bits (tests/damage)
+check-damage:
+	+@$(submake) $(B)/pmesh $(damage)
+	@PMESH=$(B)/pmesh LONG=1 tests/damage/run.sh
 
 ## check-faults: every allocation fails, 200 kills (tests/faults)
 check-faults:
@@ -292,6 +300,6 @@ help:
 
 .PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
 .PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps web-deps
-.PHONY: check-web check-faults install
+.PHONY: check-web check-damage check-faults install
 .PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
