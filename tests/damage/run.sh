@@ -25,8 +25,8 @@ bake_all() {
     done <<'END'
 --lossless
 --lossless --placement optimal
---bits 24 --profile compact
---bits 6 --profile quality
+--position-bits 24 --profile compact
+--position-bits 6 --profile quality
 --measure --lossless
 --topology join
 END
