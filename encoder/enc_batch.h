@@ -44,6 +44,12 @@ typedef struct enc_role {
     uint8_t general_wing; /* of such a pair */
 } enc_role;
 
+/* What another worker than the calling thread writes to. */
+typedef struct enc_scratch {
+    uint32_t *mark; /* per vertex: see enc_surface */
+    uint32_t *fate; /* per wedge: see enc_looks; NULL if that is */
+} enc_scratch;
+
 /* A contraction run; batches leave their mark in `out`. */
 typedef struct enc_run {
     const enc_mesh *mesh;
@@ -78,6 +84,8 @@ typedef struct enc_run {
     uint32_t tick;         /* candidates seen, for progress */
     bool cancelled;
     bool starved; /* out of memory */
+    enc_scratch *scratch;  /* per worker but the first; NULL: there is none */
+    struct enc_run *views; /* likewise: see enc_collect.c */
 } enc_run;
 
 /* True once the base mesh is reached, the caller has cancelled, or there is no

@@ -62,7 +62,9 @@ pmesh_status enc_pricing_create(const enc_mesh *mesh,
             pmesh_alloc_zero(a, mesh->vertex_count, sizeof *out->moved);
     out->unevenness =
         pmesh_alloc(a, mesh->vertex_count, sizeof *out->unevenness);
-    if (!out->planes || !out->unevenness || !copy_guide(mesh, out) ||
+    out->block = pmesh_alloc(a, enc_blocks(mesh), sizeof *out->block);
+    if (!out->planes || !out->unevenness || !out->block ||
+        !copy_guide(mesh, out) ||
         (config->metric == PMESH_ACCUMULATED && !out->moved)) {
         enc_pricing_destroy(mesh, out);
         return PMESH_E_MEMORY;
@@ -77,6 +79,7 @@ void enc_pricing_destroy(const enc_mesh *mesh, enc_pricing *p)
     pmesh_release(a, p->planes, mesh->vertex_count, sizeof *p->planes);
     pmesh_release(a, p->moved, mesh->vertex_count, sizeof *p->moved);
     pmesh_release(a, p->unevenness, mesh->vertex_count, sizeof *p->unevenness);
+    pmesh_release(a, p->block, enc_blocks(mesh), sizeof *p->block);
     pmesh_release(a, p->factor, mesh->vertex_count, sizeof *p->factor);
     pmesh_release(a, p->pull, mesh->vertex_count, sizeof *p->pull);
     pmesh_release(a, p->pulled, mesh->vertex_count, sizeof *p->pulled);
@@ -123,23 +126,59 @@ static inline enc_quadric recall(const enc_pricing *p, uint32_t v)
     return q;
 }
 
+typedef struct beginning {
+    enc_pricing *pricing;
+    const enc_surface *surface;
+    bool planes; /* are to be made */
+} beginning;
+
+/* Edges count where their lower half-edge starts. */
+static void survey_block(enc_pricing *p, const enc_surface *s, uint32_t part)
+{
+    const uint32_t end = enc_block_end(s->mesh, part);
+    enc_block sums = { .length = 0 };
+
+    for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
+        uint32_t start = s->first[v];
+        double length;
+        if (start == ENC_NONE)
+            continue;
+        for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
+            sums.edges += h < s->twin[h];
+        p->unevenness[v] = (float)enc_star_unevenness(s, v, &length);
+        sums.length += length;
+    }
+    p->block[part] = sums;
+}
+
+/* Planes are one part: their sums go from face to face. */
+static void begin_part(void *user, uint32_t part, unsigned worker)
+{
+    const beginning *b = user;
+    const uint32_t blocks = enc_blocks(b->surface->mesh);
+
+    (void)worker;
+    if (part == 0 && b->planes)
+        enc_star_all_planes(b->surface, b->pricing->planes);
+    else if (part > 0 && part <= blocks)
+        survey_block(b->pricing, b->surface, part - 1);
+    else if (part > blocks)
+        enc_looks_begin(&b->pricing->looks, b->surface, part - blocks - 1);
+}
+
 void enc_pricing_begin(enc_pricing *p, const enc_surface *s, enc_taste taste,
                        bool first_time)
 {
+    beginning b = { p, s, first_time || p->metric == PMESH_MEMORYLESS };
+    const uint32_t blocks = enc_blocks(s->mesh);
     double sum = 0;
 
     p->taste = taste;
-    enc_looks_begin(&p->looks, s);
-    if (first_time || p->metric == PMESH_MEMORYLESS)
-        enc_star_all_planes(s, p->planes);
-    for (uint32_t v = 0; v < s->mesh->vertex_count; v++) {
-        double length;
-
-        if (s->first[v] == ENC_NONE)
-            continue;
-        p->unevenness[v] = (float)enc_star_unevenness(s, v, &length);
-        sum += length;
-    }
+    enc_pool_run(enc_surface_pool(s),
+                 1 + blocks + enc_looks_parts(&p->looks, s->mesh), begin_part,
+                 &b);
+    for (uint32_t i = 0; i < blocks; i++)
+        sum += p->block[i].length;
     p->edge_square = sum / (3.0 * s->face_count);
 }
 

@@ -447,14 +447,16 @@ static job *draft_best(const enc_mesh *mesh, const pmesh_mesh_input *in,
 }
 
 static pmesh_status run(const pmesh_mesh_input *in,
-                        const pmesh_encoder_config *config, pmesh_write write,
-                        void *user, pmesh_encode_report *report)
+                        const pmesh_encoder_config *config, enc_pool *pool,
+                        pmesh_write write, void *user,
+                        pmesh_encode_report *report)
 {
     enc_mesh mesh;
     const double start = report->clock ? report->clock() : 0;
     pmesh_status status = enc_mesh_import(in, config, &mesh, report);
     if (status != PMESH_OK)
         return status;
+    mesh.pool = pool;
     report->seconds_import = (report->clock ? report->clock() : 0) - start;
 
     job *j = draft_best(&mesh, in, config, report, &status);
@@ -484,5 +486,12 @@ pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
 
     pmesh_encoder_config resolved = *config;
     resolved.allocator = pmesh_allocator_resolve(config->allocator);
-    return run(mesh, &resolved, write, user, report);
+    /* Hooks of the caller run in the caller's thread. */
+    enc_pool *pool =
+        enc_pool_create(&resolved.allocator,
+                        config->cost == PMESH_COST_CUSTOM ? 1 : config->threads);
+    const pmesh_status status =
+        run(mesh, &resolved, pool, write, user, report);
+    enc_pool_destroy(pool);
+    return status;
 }

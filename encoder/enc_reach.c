@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "encoder/enc_reach.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "encoder/enc_distance.h"
@@ -11,11 +12,16 @@ enum { PIONEERS = 61 };
 
 pmesh_status enc_reach_create(const enc_mesh *mesh, enc_reach *out)
 {
+    const pmesh_allocator *a = &mesh->allocator;
+
     *out = (enc_reach){ .mesh = mesh };
-    out->beside = pmesh_alloc(&mesh->allocator, mesh->vertex_count,
-                              sizeof *out->beside);
-    if (!out->beside)
+    out->beside = pmesh_alloc(a, mesh->vertex_count, sizeof *out->beside);
+    if (mesh->pool)
+        out->guess = pmesh_alloc(a, mesh->vertex_count, sizeof *out->guess);
+    if (!out->beside || (mesh->pool && !out->guess)) {
+        enc_reach_destroy(out);
         return PMESH_E_MEMORY;
+    }
     for (uint32_t v = 0; v < mesh->vertex_count; v++)
         out->beside[v] = v;
     return PMESH_OK;
@@ -23,11 +29,23 @@ pmesh_status enc_reach_create(const enc_mesh *mesh, enc_reach *out)
 
 void enc_reach_destroy(enc_reach *r)
 {
-    if (r->mesh)
-        pmesh_release(&r->mesh->allocator, r->beside, r->mesh->vertex_count,
-                      sizeof *r->beside);
+    if (r->mesh) {
+        const pmesh_allocator *a = &r->mesh->allocator;
+        const uint32_t n = r->mesh->vertex_count;
+        pmesh_release(a, r->beside, n, sizeof *r->beside);
+        pmesh_release(a, r->guess, n, sizeof *r->guess);
+    }
     *r = (enc_reach){ 0 };
 }
+
+/* A search. It goes on while `least` is above `enough`, and would have ended as
+ * it has if that had been anything below `before`. */
+typedef struct search {
+    const enc_surface *surface;
+    double x[3], enough;
+    double least, before; /* squares: the least so far, and the one before */
+    uint32_t face;        /* that is so close */
+} search;
 
 static void to_doubles(const int32_t p[3], double out[3])
 {
@@ -44,74 +62,117 @@ static double from_face(const enc_surface *s, uint32_t face, const double x[3])
     return enc_distance_square(x, corner[0], corner[1], corner[2]);
 }
 
-/* Looks for a face around v that is closer than *least, until one is close
- * enough; true if there is one, which becomes *face. */
-static bool look_around(const enc_surface *s, uint32_t v, const double x[3],
-                        double enough, double *least, uint32_t *face)
+/* Looks for a face around v that is closer, until one is close enough; true if
+ * there is one. */
+static bool look_around(search *look, uint32_t v)
 {
+    const enc_surface *s = look->surface;
     uint32_t start = s->first[v];
     bool found = false;
 
-    for (uint32_t h = start; h != ENC_NONE && *least > enough;
+    for (uint32_t h = start; h != ENC_NONE && look->least > look->enough;
          h = enc_around(s, &start, h)) {
-        const double square = from_face(s, h / 3, x);
-        if (square < *least) {
-            *least = square;
-            *face = h / 3;
+        const double square = from_face(s, h / 3, look->x);
+        if (square < look->least) {
+            look->before = look->least;
+            look->least = square;
+            look->face = h / 3;
             found = true;
         }
     }
     return found;
 }
 
-/* From the faces around v to closer ones around their corners, and so on. *v
- * becomes a corner of the last one. */
-static double look_for(const enc_surface *s, uint32_t *v, const double x[3],
-                       double enough)
+/* From the faces around v to closer ones around their corners, and so on.
+ * Returns a corner of the last one. */
+static uint32_t look_for(search *look, uint32_t v)
 {
-    double least = INFINITY;
-    uint32_t face = 0;
-    bool closer = look_around(s, *v, x, enough, &least, &face);
+    bool closer = look_around(look, v);
 
-    while (closer && least > enough) {
-        const uint32_t *corner = &s->vertex[3 * face];
-        const uint32_t from = *v, last = face;
+    while (closer && look->least > look->enough) {
+        const uint32_t *corner = &look->surface->vertex[3 * look->face];
+        const uint32_t from = v, last = look->face;
         closer = false;
-        for (int k = 0; k < 3 && face == last; k++)
-            if (corner[k] != from &&
-                look_around(s, corner[k], x, enough, &least, &face)) {
-                *v = corner[k];
+        for (int k = 0; k < 3 && look->face == last; k++)
+            if (corner[k] != from && look_around(look, corner[k])) {
+                v = corner[k];
                 closer = true;
             }
     }
-    return least;
+    return v;
 }
 
-static void look_from(enc_reach *r, const enc_surface *s,
-                      const enc_schedule *made, uint32_t vertex)
+/* From where the vertex was the last time; what it finds is *look, and where
+ * it is then is returned. */
+static uint32_t look_from(const enc_reach *r, const enc_surface *s,
+                          const enc_schedule *made, uint32_t vertex,
+                          search *look)
 {
-    uint32_t *v = &r->beside[vertex];
-    double x[3];
+    uint32_t v = r->beside[vertex];
 
-    while (made->vertex_end[*v] != ENC_NONE)
-        *v = made->contraction[made->vertex_end[*v]].parent;
-    if (s->first[*v] == ENC_NONE)
-        return;
-    to_doubles(r->mesh->position[vertex], x);
-    const double square = look_for(s, v, x, r->most);
-    if (square > r->most)
-        r->most = square;
+    *look = (search){ .surface = s, .enough = r->most, .least = INFINITY,
+                      .before = INFINITY };
+    while (made->vertex_end[v] != ENC_NONE)
+        v = made->contraction[made->vertex_end[v]].parent;
+    if (s->first[v] == ENC_NONE) {
+        look->least = 0;
+        return v;
+    }
+    to_doubles(r->mesh->position[vertex], look->x);
+    return look_for(look, v);
+}
+
+static void reach_from(enc_reach *r, const enc_surface *s,
+                       const enc_schedule *made, uint32_t vertex)
+{
+    search look;
+
+    r->beside[vertex] = look_from(r, s, made, vertex, &look);
+    if (look.least > r->most)
+        r->most = look.least;
+}
+
+typedef struct guessing {
+    enc_reach *reach;
+    const enc_surface *surface;
+    const enc_schedule *made;
+} guessing;
+
+/* With the bound as it is now. */
+static void guess_block(void *user, uint32_t part, unsigned worker)
+{
+    const guessing *g = user;
+    const enc_reach *r = g->reach;
+    const uint32_t end = enc_block_end(r->mesh, part);
+    search look;
+
+    (void)worker;
+    for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
+        enc_guess *guess = &r->guess[v];
+        guess->beside = look_from(r, g->surface, g->made, v, &look);
+        /* Rounded down; what is too far is looked at again in any case. */
+        guess->below = look.least > r->most
+                           ? 0
+                           : (float)(look.before * (1 - FLT_EPSILON));
+    }
 }
 
 double enc_reach_bound(enc_reach *r, const enc_surface *s,
                        const enc_schedule *made)
 {
     const uint32_t count = r->mesh->vertex_count;
+    guessing g = { r, s, made };
 
     for (uint32_t v = 0; v < count; v += PIONEERS)
-        look_from(r, s, made, v);
-    for (uint32_t v = 0; v < count; v++)
-        look_from(r, s, made, v);
+        reach_from(r, s, made, v);
+    if (r->guess)
+        enc_pool_run(r->mesh->pool, enc_blocks(r->mesh), guess_block, &g);
+    for (uint32_t v = 0; v < count; v++) {
+        if (r->guess && r->most < (double)r->guess[v].below)
+            r->beside[v] = r->guess[v].beside;
+        else
+            reach_from(r, s, made, v);
+    }
     return sqrt(r->most);
 }
 

@@ -13,6 +13,11 @@
  * bound of the level before: bounds shall not fall. So most look at few faces.
  *
  * In a joined mesh, vertices of pieces that have vanished do not count.
+ *
+ * The bound that ends a search grows from vertex to vertex. Several threads
+ * guess, with the bound as it is when they begin, where each search ends; the
+ * few that would end elsewhere by now are made again, one after the other. So
+ * the result is that of one thread.
  */
 #ifndef ENC_REACH_H
 #define ENC_REACH_H
@@ -20,9 +25,15 @@
 #include "encoder/enc_schedule.h"
 #include "encoder/enc_surface.h"
 
+typedef struct enc_guess {
+    uint32_t beside;
+    float below; /* the guess is right as long as the bound is below this */
+} enc_guess;
+
 typedef struct enc_reach {
     const enc_mesh *mesh;
     uint32_t *beside; /* per vertex of the full mesh: one of the level */
+    enc_guess *guess; /* per vertex; NULL without helpers */
     double most;      /* squared, in steps: the bound of the last level */
 } enc_reach;
 

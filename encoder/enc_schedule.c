@@ -169,6 +169,41 @@ static bool count_segments(const enc_mesh *mesh, enc_run *run)
     return true;
 }
 
+/* What the other workers need; see enc_collect.c. */
+static bool create_scratch(const enc_mesh *mesh, enc_run *run)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const unsigned others = enc_pool_workers(mesh->pool) - 1;
+
+    if (others == 0)
+        return true;
+    run->scratch = pmesh_alloc_zero(a, others, sizeof *run->scratch);
+    run->views = pmesh_alloc_zero(a, others, sizeof *run->views);
+    if (!run->scratch || !run->views)
+        return false;
+    for (unsigned i = 0; i < others; i++) {
+        enc_scratch *own = &run->scratch[i];
+        own->mark = pmesh_alloc_zero(a, mesh->vertex_count, sizeof *own->mark);
+        if (!own->mark || !enc_looks_fate(&run->pricing.looks, mesh, &own->fate))
+            return false;
+    }
+    return true;
+}
+
+static void destroy_scratch(const enc_mesh *mesh, enc_run *run)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const unsigned others = enc_pool_workers(mesh->pool) - 1;
+
+    for (unsigned i = 0; run->scratch && i < others; i++) {
+        enc_scratch *own = &run->scratch[i];
+        pmesh_release(a, own->mark, mesh->vertex_count, sizeof *own->mark);
+        pmesh_release(a, own->fate, mesh->wedge_count, sizeof *own->fate);
+    }
+    pmesh_release(a, run->scratch, others, sizeof *run->scratch);
+    pmesh_release(a, run->views, others, sizeof *run->views);
+}
+
 static pmesh_status run_create(const enc_mesh *mesh,
                                const pmesh_encoder_config *config,
                                enc_schedule *schedule, enc_run *run)
@@ -189,7 +224,8 @@ static pmesh_status run_create(const enc_mesh *mesh,
         status = enc_reach_create(mesh, &run->reach);
     if (status == PMESH_OK)
         status = find_near(mesh, run);
-    if (status == PMESH_OK && !count_segments(mesh, run))
+    if (status == PMESH_OK &&
+        (!count_segments(mesh, run) || !create_scratch(mesh, run)))
         status = PMESH_E_MEMORY;
     if (status != PMESH_OK)
         return status;
@@ -210,6 +246,7 @@ static void run_destroy(const enc_mesh *mesh, enc_run *run)
 {
     const pmesh_allocator *a = &mesh->allocator;
 
+    destroy_scratch(mesh, run);
     enc_surface_destroy(&run->surface);
     enc_pricing_destroy(mesh, &run->pricing);
     if (run->queue.list)
