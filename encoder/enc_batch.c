@@ -159,7 +159,8 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
     end_face(out, pair->right, index);
     for (uint32_t i = 0; link && i < link->count; i++)
         end_face(out, link->edge[i], index);
-    run->drift[pair->parent] = (float)error;
+    if (run->drift)
+        run->drift[pair->parent] = (float)error;
     if (run->segment_size)
         run->segment_size[run->mesh->guide->segment[pair->child]]--;
     run->taken[pair->child] = run->taken[pair->parent] =
@@ -183,11 +184,10 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
 static double total_error(const enc_run *run, const enc_pair *pair,
                           const enc_offer *offer)
 {
+    if (!run->drift)
+        return 0;
     const double child = (double)run->drift[pair->child];
     const double parent = (double)run->drift[pair->parent];
-
-    if (!(run->error_limit < INFINITY))
-        return 0;
     return enc_reach_of_pair(&run->surface, pair, offer->place) +
            (child > parent ? child : parent);
 }

@@ -72,7 +72,7 @@ typedef struct enc_run {
     uint8_t *taken;      /* per vertex: batch_count when last in a pair, + 1 */
     enc_role *role;      /* per vertex; NULL unless joined */
     float *drift;        /* per vertex: how far pairs have led from the
-                            original there, if there is a limit */
+                            original there; NULL unless there is a limit */
     uint32_t face_target, vertex_target;
     uint32_t *segment_size; /* per segment of the guide: its vertices; NULL
                                unless segments have shares */

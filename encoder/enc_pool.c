@@ -20,7 +20,7 @@ typedef struct helper {
 /* All but the allocator is guarded by `lock`. */
 struct enc_pool {
     pmesh_allocator allocator;
-    pthread_mutex_t lock;
+    pthread_mutex_t lock, memory;
     pthread_cond_t begun, ended;
     unsigned workers;
     helper helpers[MAX_WORKERS]; /* the first stands for the calling thread */
@@ -63,10 +63,13 @@ static bool create_locks(enc_pool *pool)
 {
     if (pthread_mutex_init(&pool->lock, NULL) != 0)
         return false;
-    if (pthread_cond_init(&pool->begun, NULL) == 0) {
-        if (pthread_cond_init(&pool->ended, NULL) == 0)
-            return true;
-        pthread_cond_destroy(&pool->begun);
+    if (pthread_mutex_init(&pool->memory, NULL) == 0) {
+        if (pthread_cond_init(&pool->begun, NULL) == 0) {
+            if (pthread_cond_init(&pool->ended, NULL) == 0)
+                return true;
+            pthread_cond_destroy(&pool->begun);
+        }
+        pthread_mutex_destroy(&pool->memory);
     }
     pthread_mutex_destroy(&pool->lock);
     return false;
@@ -110,6 +113,7 @@ void enc_pool_destroy(enc_pool *pool)
         pthread_join(pool->helpers[i].thread, NULL);
     pthread_cond_destroy(&pool->ended);
     pthread_cond_destroy(&pool->begun);
+    pthread_mutex_destroy(&pool->memory);
     pthread_mutex_destroy(&pool->lock);
     const pmesh_allocator a = pool->allocator;
     pmesh_release(&a, pool, 1, sizeof *pool);
@@ -118,6 +122,30 @@ void enc_pool_destroy(enc_pool *pool)
 unsigned enc_pool_workers(const enc_pool *pool)
 {
     return pool ? pool->workers : 1;
+}
+
+static void *give(void *user, size_t size)
+{
+    enc_pool *pool = user;
+
+    pthread_mutex_lock(&pool->memory);
+    void *block = pool->allocator.alloc(pool->allocator.user, size);
+    pthread_mutex_unlock(&pool->memory);
+    return block;
+}
+
+static void take(void *user, void *block, size_t size)
+{
+    enc_pool *pool = user;
+
+    pthread_mutex_lock(&pool->memory);
+    pool->allocator.release(pool->allocator.user, block, size);
+    pthread_mutex_unlock(&pool->memory);
+}
+
+pmesh_allocator enc_pool_allocator(enc_pool *pool)
+{
+    return (pmesh_allocator){ give, take, pool };
 }
 
 void enc_pool_begin(enc_pool *pool, uint32_t parts, enc_pool_work work,
@@ -167,6 +195,12 @@ unsigned enc_pool_workers(const enc_pool *pool)
 {
     (void)pool;
     return 1;
+}
+
+pmesh_allocator enc_pool_allocator(enc_pool *pool)
+{
+    (void)pool;
+    return (pmesh_allocator){ NULL, NULL, NULL };
 }
 
 void enc_pool_begin(enc_pool *pool, uint32_t parts, enc_pool_work work,

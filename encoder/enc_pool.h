@@ -13,7 +13,8 @@
  * A pool that is NULL works in the calling thread alone, part by part: so do
  * platforms without POSIX threads and processes that get no more of them.
  *
- * One thread at a time runs a pool, and work() runs none.
+ * One thread at a time runs a pool, and work() runs none. Work does not take
+ * memory, unless by enc_pool_allocator().
  */
 #ifndef ENC_POOL_H
 #define ENC_POOL_H
@@ -30,6 +31,9 @@ void enc_pool_destroy(enc_pool *pool); /* or NULL */
 
 /* Workers are numbered below this. */
 unsigned enc_pool_workers(const enc_pool *pool);
+
+/* The pool's allocator for several threads at once; the pool is not NULL. */
+pmesh_allocator enc_pool_allocator(enc_pool *pool);
 
 void enc_pool_run(enc_pool *pool, uint32_t parts, enc_pool_work work,
                   void *user);

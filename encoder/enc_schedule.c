@@ -232,10 +232,12 @@ static pmesh_status run_create(const enc_mesh *mesh,
     run->edge_state = pmesh_alloc_zero(
         a, 3 * (size_t)mesh->face_count + near_room(mesh), 1);
     run->taken = pmesh_alloc_zero(a, n, sizeof *run->taken);
-    run->drift = pmesh_alloc_zero(a, n, sizeof *run->drift);
+    if (config->base_error > 0)
+        run->drift = pmesh_alloc_zero(a, n, sizeof *run->drift);
     if (mesh->joined)
         run->role = pmesh_alloc_zero(a, n, sizeof *run->role);
-    return run->edge_state && run->taken && run->drift &&
+    return run->edge_state && run->taken &&
+                   (run->drift || !(config->base_error > 0)) &&
                    (run->role || !mesh->joined)
                ? PMESH_OK
                : PMESH_E_MEMORY;
