@@ -17,8 +17,17 @@ version := $(shell awk '/define PMESH_VERSION_/ { printf "%s%s", dot, $$3; \
 opt_release := -O3 -DNDEBUG
 opt_debug := -O0 -g
 opt_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
+# These need clang: see fuzz, msan and coverage below. Comparisons of parsers are
+# worth tracing; in the codec they are arithmetic and take half of the time.
+no_cmp := -fno-sanitize-coverage=trace-cmp
+opt_fuzz := -O2 -g -fsanitize=address,undefined,float-cast-overflow \
+  -fno-sanitize-recover=all -fsanitize=fuzzer-no-link
+opt_msan := -O1 -g -fsanitize=memory -fsanitize-memory-track-origins \
+  -fno-sanitize-recover=all -fsanitize=fuzzer-no-link
+opt_coverage := -O1 -g -fprofile-instr-generate -fcoverage-mapping
 ifndef opt_$(config)
-$(error config=$(config): there are release, debug and sanitize)
+$(error config=$(config): there are release, debug, sanitize, fuzz, msan and \
+  coverage)
 endif
 
 # -ffp-contract=off: the encoder's choices must not depend on the compiler.
@@ -28,7 +37,8 @@ c_flags := -std=c11 $(shared_flags) -Wall -Wextra -Wpedantic -Wshadow \
   -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wcast-qual \
   -Wwrite-strings -Wundef -Wvla $(CPPFLAGS) $(CFLAGS)
 cxx_flags := -std=c++17 $(shared_flags) -Wall -Wextra $(CPPFLAGS) $(CXXFLAGS)
-link_flags := -pthread $(filter -fsanitize=%,$(opt_$(config))) $(LDFLAGS)
+link_flags := -pthread $(filter -fsanitize=% -fprofile-instr%,$(opt_$(config))) \
+  $(LDFLAGS)
 posix := -D_POSIX_C_SOURCE=200809L
 cgal := -isystem /usr/include/eigen3 -Wno-maybe-uninitialized
 bridge_libs := -ldraco -lmeshoptimizer -lz
@@ -45,6 +55,10 @@ reference := $(B)/reference $(B)/reference_agree
 reference_obj := $(call obj,$(wildcard tests/reference/ref_*.c)) \
   $(B)/reference_tables.o
 libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
+targets := $(patsubst tests/fuzz/target_%.c,%,\
+  $(wildcard tests/fuzz/target_*.c))
+fuzzers := $(addprefix $(B)/fuzz/,$(targets))
+libfuzzer := $(filter fuzz msan,$(config))
 
 ## all: libraries and program (default)
 all: $(libs) $(B)/pmesh
@@ -63,7 +77,14 @@ $(B)/reference_agree: $(call obj,$(addprefix tests/,$(addprefix reference/,\
   agree.c author.c chunks.c compare.c mutate.c random_mesh.c) \
   golden/golden_mesh.c unit/shapes.c) tools/trig.c) $(reference_obj) \
   $(B)/libpmesh.a
-$(libs) $(B)/pmesh $(B)/unit $(B)/train: $(B)/objects.list
+$(fuzzers): $(B)/fuzz/%: $(B)/tests/fuzz/target_%.o $(call obj,$(addprefix \
+  tests/,$(addprefix fuzz/,fuzz.c import.c pieces.c use.c) $(addprefix unit/,\
+  faces.c float_faces.c shapes.c)) $(if $(libfuzzer),,tests/fuzz/driver.c)) \
+  $(shared_obj) $(B)/libpmesh.a
+# Where the checks are on, and random bytes are to be refused, nobody mends.
+$(if $(libfuzzer),$(filter-out %/dec_raw,$(filter $(B)/fuzz/dec_% \
+  $(B)/fuzz/tool_%,$(fuzzers)))): $(B)/tests/fuzz/mutator.o
+$(libs) $(B)/pmesh $(B)/unit $(B)/train $(fuzzers): $(B)/objects.list
 
 inputs = $(filter %.o %.a,$^)
 quiet = $(if $(V),,@echo '  $@' && )
@@ -73,14 +94,18 @@ $(B)/%.so:
 	$(quiet)$(CC) -shared -Wl,-soname,$(soname) $(inputs) $(link_flags) -lm -o $@
 $(B)/pmesh $(B)/unit $(B)/train:
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
+$(fuzzers):
+	@mkdir -p $(@D)
+	$(quiet)$(CXX) $(inputs) $(link_flags) $(if $(libfuzzer),\
+	  -fsanitize=fuzzer) $(bridge_libs) -lm -o $@
 
 $(golden) $(reference):
 	$(quiet)$(CC) $(inputs) $(link_flags) -lm -o $@
 
 $(B)/%.o: %.c $(B)/c.flags
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(c_flags) $(if $(filter tools/% tests/%,$<),$(posix)) \
-	  -MMD -MP -c $< -o $@
+	$(quiet)$(CC) $(c_flags) $(if $(filter tools/% tests/%,$<),$(posix),\
+	  $(if $(libfuzzer),$(no_cmp))) -MMD -MP -c $< -o $@
 $(B)/%.o: %.cpp $(B)/cxx.flags | $(B)/found
 	@mkdir -p $(@D)
 	$(quiet)$(CXX) $(cxx_flags) $(if $(filter tests/%,$<),$(cgal)) \
@@ -100,7 +125,7 @@ $(B)/found:
 
 # Written only when they change: objects are rebuilt when the compiler or its
 # flags are others, libraries and programs when a source came or went.
-$(B)/c.flags: line = $(CC) $(c_flags)
+$(B)/c.flags: line = $(CC) $(c_flags) $(if $(libfuzzer),$(no_cmp))
 $(B)/cxx.flags: line = $(CXX) $(cxx_flags)
 $(B)/objects.list: line = $(lib_obj) $(tool_obj) $(unit_obj)
 $(B)/c.flags $(B)/cxx.flags $(B)/objects.list: FORCE
@@ -122,7 +147,7 @@ test: deps
 
 ## check: the same without installing anything
 check:
-	+@$(submake) all $(B)/unit $(golden) $(reference)
+	+@$(submake) all $(B)/unit $(golden) $(reference) $(fuzzers)
 	@tests/run.sh $(B)
 
 ## unit: only the unit tests; T=name selects some
@@ -183,6 +208,26 @@ check-gltf:
 	  TRANSFORM=$(CURDIR)/build/gltf/node_modules/.bin/gltf-transform \
 	  tests/scene/run.sh
 
+## fuzz: one target under libFuzzer, T=dec_oneshot TIME=60 (tests/fuzz; clang)
+## msan: the same with memory that was never written in view, T=, TIME=
+fuzz msan: fuzz-deps
+	+@$(submake) $(B)/pmesh
+	+@$(submake) config=$@ CC=clang CXX=clang++ build/$@/fuzz/$(fuzz_target)
+	@PMESH=$(B)/pmesh tests/fuzz/fuzz.sh build/$@/fuzz/$(fuzz_target) \
+	  $(or $(TIME),60)
+fuzz_target = $(or $(T),$(error T=NAME says what to fuzz: $(targets)))
+
+## fuzz-replay: what fuzzing found, and other odd files, to every target
+fuzz-replay:
+	+@$(submake) $(B)/pmesh $(fuzzers)
+	@PMESH=$(B)/pmesh tests/fuzz/run.sh
+
+## coverage: lines and branches that unit tests and fuzzing's files reach
+coverage: fuzz-deps
+	+@$(submake) config=coverage CC=clang CXX=clang++ build/coverage/unit \
+	  $(fuzzers:$(B)/%=build/coverage/%)
+	@tests/fuzz/coverage.sh build/coverage
+
 ## golden: write tests/golden anew; only for another version of the format
 golden: $(golden)
 	$(B)/golden_bake tests/golden
@@ -231,6 +276,9 @@ bench-deps:
 ## web-deps: those that `make web` and `make check-web` need
 web-deps:
 	@tests/install-deps.sh build web
+## fuzz-deps: those that `make fuzz`, `msan` and `coverage` need
+fuzz-deps:
+	@tests/install-deps.sh build fuzz
 ## cross-deps: those that `make check-cross` needs
 cross-deps:
 	@tests/install-deps.sh cross
@@ -286,6 +334,7 @@ help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
+.PHONY: fuzz msan fuzz-replay coverage fuzz-deps
 .PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps web-deps
 .PHONY: check-web install
 .PHONY: uninstall clean help FORCE

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Usage: tests/install-deps.sh [--check] GROUP...
-# of the groups build, test, bench, cross and web.
+# of the groups build, test, bench, cross, fuzz and web.
 #
 # Installs the Debian packages of what is missing, by apt-get as root or
 # through sudo. If nothing is missing it does nothing, offline too. --check
@@ -72,6 +72,13 @@ group_cross() {
     need wasi-libc test -e /usr/lib/wasm32-wasi/libc.a
     need libclang-rt-dev-wasm32 links clang --target=wasm32-wasi
     need nodejs program node
+}
+
+group_fuzz() {
+    need clang program clang
+    need libclang-rt-dev links clang -fsanitize=address
+    need llvm program llvm-cov
+    need python3 program python3
 }
 
 group_web() {
