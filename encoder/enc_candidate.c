@@ -290,10 +290,17 @@ static double mean_factor(const enc_pricing *p, const enc_pair *pair)
     return 0.5 * (factor_of(p, pair->child) + factor_of(p, pair->parent));
 }
 
-/* Of a pair whose parent goes to `middle` + x. */
-static double cost_of(const enc_pricing *p, const enc_surface *s,
-                      const enc_pair *pair, const double middle[3],
-                      const double x[3], const enc_offer *offer)
+static double plain_cost(const enc_pricing *p, const enc_pair *pair,
+                         double edge_square, double quadric)
+{
+    return p->taste.quadric * quadric +
+           mean_factor(p, pair) * regularity(p, pair, edge_square);
+}
+
+/* By another rule than quadrics; the parent goes to `middle` + x. */
+static double cost_by_rule(const enc_pricing *p, const enc_surface *s,
+                           const enc_pair *pair, const double middle[3],
+                           const double x[3], const enc_offer *offer)
 {
     const uint32_t ends[2] = { pair->parent, pair->child };
     const uint32_t *source = s->mesh->source;
@@ -313,13 +320,21 @@ static double cost_of(const enc_pricing *p, const enc_surface *s,
         told.half[i] = at[1][i] - middle[i];
         told.place[i] = middle[i] + x[i];
     }
-    if (p->rule.cost == PMESH_COST_LENGTH || p->rule.cost == PMESH_COST_CAMERA)
-        return mean_factor(p, pair) * enc_cost(&p->rule, &told);
-    if (p->rule.cost != PMESH_COST_QUADRIC)
-        return enc_cost(&p->rule, &told);
-    return p->taste.quadric * offer->quadric +
-           mean_factor(p, pair) *
-               regularity(p, pair, 4 * dot(told.half, told.half));
+    const double cost = enc_cost(&p->rule, &told);
+    const bool shape_apart = p->rule.cost == PMESH_COST_LENGTH ||
+                             p->rule.cost == PMESH_COST_CAMERA;
+    return shape_apart ? mean_factor(p, pair) * cost : cost;
+}
+
+/* `half` points from the middle to the child. */
+static double cost_of(const enc_pricing *p, const enc_surface *s,
+                      const enc_pair *pair, const double middle[3],
+                      const double half[3], const double x[3],
+                      const enc_offer *offer)
+{
+    return p->rule.cost == PMESH_COST_QUADRIC
+               ? plain_cost(p, pair, 4 * dot(half, half), offer->quadric)
+               : cost_by_rule(p, s, pair, middle, x, offer);
 }
 
 /* Both ends' quadrics about the midpoint: without attributes and factors, and
@@ -345,9 +360,29 @@ static void sum_both(const enc_pricing *p, const enc_surface *s,
     sum_about_midpoint(&ends[0], &ends[1], half, sum);
 }
 
+/* A parent that stays, by quadrics alone: what most pairs are. */
+static enc_offer estimate_plain(const enc_pricing *p, const enc_surface *s,
+                                const enc_pair *pair)
+{
+    const enc_quadric child = recall(p, pair->child);
+    const double rest = p->moved ? p->moved[pair->parent].c : 0;
+    double back[3];
+    enc_offer offer = { .cost = 0 };
+
+    difference(s->position[pair->parent], s->position[pair->child], back);
+    offer.quadric = factor_of(p, pair->child) *
+                        enc_quadric_value(&child, back) +
+                    factor_of(p, pair->parent) * rest;
+    offer.cost = plain_cost(p, pair, dot(back, back), offer.quadric);
+    return offer;
+}
+
 enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
                                const enc_pair *pair)
 {
+    if (p->placement == PMESH_SUBSET && p->looks.count == 0 &&
+        p->rule.cost == PMESH_COST_QUADRIC)
+        return estimate_plain(p, s, pair);
     enc_quadric ends[2] = { recall(p, pair->child), recall(p, pair->parent) };
     const double weight = ends[0].weight + ends[1].weight;
     double edge[3], half[3], middle[3], x[3];
@@ -377,7 +412,7 @@ enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
     }
     enc_looks_forget(&p->looks, s, pair);
     offer.distance = weight > 0 ? offer.distance / weight : 0;
-    offer.cost = cost_of(p, s, pair, middle, x, &offer);
+    offer.cost = cost_of(p, s, pair, middle, half, x, &offer);
     return offer;
 }
 
@@ -467,7 +502,7 @@ enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
     offer.quadric = enc_quadric_value(&sum, x);
     if (shape.weight > 0)
         offer.distance = enc_quadric_value(&shape, x) / shape.weight;
-    offer.cost = cost_of(p, s, pair, middle, x, &offer);
+    offer.cost = cost_of(p, s, pair, middle, half, x, &offer);
     return offer;
 }
 
