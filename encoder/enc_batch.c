@@ -125,8 +125,8 @@ static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
         }
         const double price =
             offer.cost + turn * run->pricing.edge_square * off;
-        out[count++] =
-            (enc_entry){ enc_key(PARALLEL_FACTOR * price), enc_entry_id(h, back) };
+        out[count++] = (enc_entry){ enc_key(PARALLEL_FACTOR * price),
+                                    enc_entry_id(h, back) };
     }
     return count;
 }

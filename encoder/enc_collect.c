@@ -125,7 +125,8 @@ static uint8_t guided_state(const enc_run *run, uint32_t h, uint8_t state)
         enc_guide_directions(guide, pair.child, pair.parent);
     unsigned lost = (allowed & ENC_GUIDE_FORTH ? 0 : MAY_FORTH) |
                     (allowed & ENC_GUIDE_BACK ? 0 : MAY_BACK);
-    if (enc_run_has_to_stay(run, pair.child)) /* and the parent is of its segment */
+    /* The parent is of its segment. */
+    if (enc_run_has_to_stay(run, pair.child))
         lost |= MAY_FORTH | MAY_BACK;
     if (run->pricing.pull && run->pricing.placement == PMESH_SUBSET &&
         (run->pricing.pulled[pair.child] || run->pricing.pulled[pair.parent]) &&

@@ -6,7 +6,8 @@
 #ifndef ENC_DISTANCE_H
 #define ENC_DISTANCE_H
 
-static inline void enc_minus(const double a[3], const double b[3], double out[3])
+static inline void enc_minus(const double a[3], const double b[3],
+                             double out[3])
 {
     for (int i = 0; i < 3; i++)
         out[i] = a[i] - b[i];

@@ -576,9 +576,9 @@ pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
     pmesh_encoder_config resolved = *config;
     resolved.allocator = pmesh_allocator_resolve(config->allocator);
     /* Hooks of the caller run in the caller's thread. */
-    enc_pool *pool =
-        enc_pool_create(&resolved.allocator,
-                        config->cost == PMESH_COST_CUSTOM ? 1 : config->threads);
+    const uint32_t threads =
+        config->cost == PMESH_COST_CUSTOM ? 1 : config->threads;
+    enc_pool *pool = enc_pool_create(&resolved.allocator, threads);
     if (wants_rivals(config, pool))
         resolved.allocator = enc_pool_allocator(pool);
     const pmesh_status status =

@@ -184,7 +184,8 @@ static bool create_scratch(const enc_mesh *mesh, enc_run *run)
     for (unsigned i = 0; i < others; i++) {
         enc_scratch *own = &run->scratch[i];
         own->mark = pmesh_alloc_zero(a, mesh->vertex_count, sizeof *own->mark);
-        if (!own->mark || !enc_looks_fate(&run->pricing.looks, mesh, &own->fate))
+        if (!own->mark ||
+            !enc_looks_fate(&run->pricing.looks, mesh, &own->fate))
             return false;
     }
     return true;
