@@ -369,15 +369,11 @@ static void fetch_ahead(const enc_run *run)
     }
 }
 
-uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
+static uint32_t contract_pairs(enc_run *run, const enc_batch_plan *plan)
 {
     uint32_t accepted = 0;
     enc_entry entry;
 
-    run->too_far = false;
-    enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
-                      run->out->contraction_count == 0);
-    enc_collect(run, plan->guard);
     while (accepted < plan->limit && !enc_run_done(run) &&
            enc_queue_pop(&run->queue, &entry)) {
         fetch_ahead(run);
@@ -386,5 +382,22 @@ uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
         accepted += try_entry(run, plan, entry);
         enc_run_progress(run, 1);
     }
+    return accepted;
+}
+
+uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
+{
+    run->too_far = false;
+    enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
+                      run->out->contraction_count == 0);
+    enc_collect(run, plan->guard);
+    if (!run->bound_is_due)
+        return contract_pairs(run, plan);
+    /* Others find out how far the last batch went while this one is made. */
+    enc_reach_begin(&run->reach, &run->surface, run->out);
+    const uint32_t accepted = contract_pairs(run, plan);
+    run->out->batch_error[run->out->batch_count - 1] =
+        enc_reach_end(&run->reach);
+    run->bound_is_due = false;
     return accepted;
 }

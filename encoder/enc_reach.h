@@ -34,15 +34,26 @@ typedef struct enc_reach {
     const enc_mesh *mesh;
     uint32_t *beside; /* per vertex of the full mesh: one of the level */
     enc_guess *guess; /* per vertex; NULL without helpers */
+    bool later;       /* enc_reach_begin() may be called */
+    enc_surface copy; /* then: of the surface */
+    const enc_surface *from; /* what is searched: the surface, or the copy */
     double most;      /* squared, in steps: the bound of the last level */
 } enc_reach;
 
-pmesh_status enc_reach_create(const enc_mesh *mesh, enc_reach *out);
+/* later: the next batch does not depend on the bound. */
+pmesh_status enc_reach_create(const enc_mesh *mesh, bool later, enc_reach *out);
 void enc_reach_destroy(enc_reach *reach);
 
 /* The bound for the surface as it is now, in steps; `made` led to it. */
 double enc_reach_bound(enc_reach *reach, const enc_surface *s,
                        const enc_schedule *made);
+
+/* The same in two steps, of which the first takes what it needs of the surface:
+ * contractions may go on between them, while the others search. The pool is
+ * taken until then. */
+void enc_reach_begin(enc_reach *reach, const enc_surface *s,
+                     const enc_schedule *made);
+double enc_reach_end(enc_reach *reach);
 
 /* How far the ends of a pair, where they are now, will be from the faces around
  * them when they are one at `place`; in steps. */

@@ -222,7 +222,7 @@ static pmesh_status run_create(const enc_mesh *mesh,
         status = enc_queue_create(a, count_edges(mesh) + near_room(mesh),
                                   &run->queue);
     if (status == PMESH_OK)
-        status = enc_reach_create(mesh, &run->reach);
+        status = enc_reach_create(mesh, !(config->base_error > 0), &run->reach);
     if (status == PMESH_OK)
         status = find_near(mesh, run);
     if (status == PMESH_OK &&
@@ -379,7 +379,9 @@ static void undo_batch(enc_run *run)
 static bool close_batch(enc_run *run)
 {
     enc_schedule *out = run->out;
-    const double bound = enc_reach_bound(&run->reach, &run->surface, out);
+    const double bound =
+        run->reach.later ? 0
+                         : enc_reach_bound(&run->reach, &run->surface, out);
 
     if (bound > run->error_limit) {
         undo_batch(run);
@@ -388,6 +390,7 @@ static bool close_batch(enc_run *run)
     }
     out->batch_error[out->batch_count] = bound;
     out->batch_first[++out->batch_count] = out->contraction_count;
+    run->bound_is_due = run->reach.later;
     return true;
 }
 
@@ -412,6 +415,9 @@ static void run_batches(enc_run *run, uint32_t variant)
         else if (taken == 0)
             break;
     }
+    if (run->bound_is_due)
+        out->batch_error[out->batch_count - 1] =
+            enc_reach_bound(&run->reach, &run->surface, out);
 }
 
 static pmesh_simplify_end reason(const enc_run *run)
