@@ -18,11 +18,13 @@ void enc_run_progress(enc_run *run, uint32_t seen)
 {
     const pmesh_encoder_config *config = run->config;
     const double all = run->mesh->face_count;
+    const uint32_t before = run->tick;
 
     run->tick += seen;
-    if (run->tick < PROGRESS_INTERVAL || !config->progress)
+    if (!config->progress ||
+        (before > 0 &&
+         before / PROGRESS_INTERVAL == run->tick / PROGRESS_INTERVAL))
         return;
-    run->tick = 0;
     const double done =
         (all - run->surface.face_count) / (all - run->face_target + 1);
     if (config->progress(config->progress_user, "contract", done) != 0)

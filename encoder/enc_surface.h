@@ -99,7 +99,7 @@ static inline bool enc_on_boundary(const enc_surface *s, uint32_t v)
 
 /* Loops over vertices or faces are shared among threads by blocks of so many;
  * small surfaces are not worth it. */
-enum { ENC_BLOCK = 4096, ENC_SHARED_VERTICES = 1000 };
+enum { ENC_BLOCK = 1024, ENC_SHARED_VERTICES = 1000 };
 
 static inline uint32_t enc_blocks(const enc_mesh *mesh)
 {

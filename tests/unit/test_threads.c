@@ -102,8 +102,8 @@ static const struct {
     shape_kind kind;
     uint32_t size;
 } subjects[] = {
-    { SHAPE_SPHERE, 64 }, { SHAPE_TERRAIN, 80 }, { SHAPE_TORUS, 80 },
-    { SHAPE_FACETS, 24 }, { SHAPE_SOUP, 30 },    { SHAPE_PIECES, 40 },
+    { SHAPE_SPHERE, 34 }, { SHAPE_TERRAIN, 50 }, { SHAPE_TORUS, 50 },
+    { SHAPE_FACETS, 16 }, { SHAPE_SOUP, 24 },    { SHAPE_PIECES, 30 },
 };
 
 static void check_all(const pmesh_encoder_config *config)
