@@ -41,7 +41,9 @@ link_flags := -pthread $(filter -fsanitize=% -fprofile-instr%,$(opt_$(config))) 
   $(LDFLAGS)
 posix := -D_POSIX_C_SOURCE=200809L
 cgal := -isystem /usr/include/eigen3 -Wno-maybe-uninitialized
-bridge_libs := -ldraco -lmeshoptimizer -lz
+# Draco's archive, if there is one: its library allocates before main().
+bridge_libs := $(if $(filter /%,$(shell $(CXX) -print-file-name=libdraco.a)),\
+  -l:libdraco.a,-ldraco) -lmeshoptimizer -lz
 
 units ?= $(wildcard tests/unit/*.c)
 obj = $(patsubst %,$(B)/%.o,$(basename $(1)))
@@ -54,6 +56,8 @@ golden := $(B)/golden_bake $(B)/golden_decode
 reference := $(B)/reference $(B)/reference_agree
 reference_obj := $(call obj,$(wildcard tests/reference/ref_*.c)) \
   $(B)/reference_tables.o
+corrupt := $(B)/corrupt
+damage := $(B)/damage
 libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
 targets := $(patsubst tests/fuzz/target_%.c,%,\
   $(wildcard tests/fuzz/target_*.c))
@@ -77,6 +81,11 @@ $(B)/reference_agree: $(call obj,$(addprefix tests/,$(addprefix reference/,\
   agree.c author.c chunks.c compare.c mutate.c random_mesh.c) \
   golden/golden_mesh.c unit/shapes.c) tools/trig.c) $(reference_obj) \
   $(B)/libpmesh.a
+$(damage): $(call obj,tests/damage/damage.c tests/unit/shapes.c tools/trig.c) \
+  $(B)/libpmesh.a
+$(corrupt): $(call obj,$(wildcard tests/corrupt/*.c) \
+  tests/reference/chunks.c tests/golden/golden_mesh.c tests/unit/shapes.c) \
+  $(reference_obj) $(shared_obj) $(B)/libpmesh.a
 $(fuzzers): $(B)/fuzz/%: $(B)/tests/fuzz/target_%.o $(call obj,$(addprefix \
   tests/,$(addprefix fuzz/,fuzz.c import.c pieces.c use.c) $(addprefix unit/,\
   faces.c float_faces.c shapes.c)) $(if $(libfuzzer),,tests/fuzz/driver.c)) \
@@ -92,14 +101,14 @@ $(B)/%.a:
 	$(quiet)rm -f $@ && $(AR) rcs $@ $(inputs)
 $(B)/%.so:
 	$(quiet)$(CC) -shared -Wl,-soname,$(soname) $(inputs) $(link_flags) -lm -o $@
-$(B)/pmesh $(B)/unit $(B)/train:
+$(B)/pmesh $(B)/unit $(B)/train $(corrupt):
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
 $(fuzzers):
 	@mkdir -p $(@D)
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(if $(libfuzzer),\
 	  -fsanitize=fuzzer) $(bridge_libs) -lm -o $@
 
-$(golden) $(reference):
+$(golden) $(reference) $(damage):
 	$(quiet)$(CC) $(inputs) $(link_flags) -lm -o $@
 
 $(B)/%.o: %.c $(B)/c.flags
@@ -147,7 +156,8 @@ test: deps
 
 ## check: the same without installing anything
 check:
-	+@$(submake) all $(B)/unit $(golden) $(reference) $(fuzzers)
+	+@$(submake) all $(B)/unit $(golden) $(reference) $(corrupt) $(damage) \
+	  $(fuzzers)
 	@tests/run.sh $(B)
 
 ## unit: only the unit tests; T=name selects some
@@ -196,6 +206,16 @@ check-reference:
 	+@$(submake) $(B)/pmesh $(reference)
 	@PMESH=$(B)/pmesh FILES=10000 MENDED=2000 DAMAGED=500 \
 	  tests/reference/run.sh
+
+## check-damage: every prefix of 30 files, 500,000 flipped bits (tests/damage)
+check-damage:
+	+@$(submake) $(B)/pmesh $(damage)
+	@PMESH=$(B)/pmesh LONG=1 tests/damage/run.sh
+
+## check-faults: every allocation fails, 200 kills (tests/faults)
+check-faults:
+	+@$(submake) $(B)/pmesh
+	@PMESH=$(B)/pmesh KILLS=200 STEP=1 tests/faults/run.sh
 
 ## check-gltf: scenes of tests/scene by Khronos' glTF validator (npm)
 check-gltf:
@@ -336,6 +356,6 @@ help:
 .PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
 .PHONY: fuzz msan fuzz-replay coverage fuzz-deps
 .PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps web-deps
-.PHONY: check-web install
+.PHONY: check-web check-damage check-faults install
 .PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
