@@ -237,8 +237,10 @@ static double to_triangle(const double p[3], const double a[3],
                 fmin(to_segment(p, b, c), to_segment(p, c, a)));
 }
 
+/* Or something that is `enough` or less: nobody wants to know, then. */
 static double to_star(const enc_lod *lod, uint32_t v, uint32_t other,
-                      const double place[3], const double p[3], double least)
+                      const double place[3], const double p[3], double enough,
+                      double least)
 {
     uint32_t c = lod->first_corner[v];
 
@@ -248,6 +250,8 @@ static double to_star(const enc_lod *lod, uint32_t v, uint32_t other,
         if (a != other && b != other)
             least = fmin(least, to_triangle(p, place, lod->position[a],
                                             lod->position[b]));
+        if (least <= enough)
+            return least;
     } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
     return least;
 }
@@ -267,9 +271,10 @@ static void leave(enc_lod_delay *d, uint32_t u, uint32_t v,
         for (uint32_t i = 0; i <= l->count; i++) {
             const double *p =
                 i < l->count ? l->place[i] : lod->position[end[side]];
-            double distance = to_star(lod, u, v, place, p, INFINITY);
-            distance = to_star(lod, v, u, place, p, distance);
             uint32_t at = d->next.count;
+            const double enough = at == ENC_LOD_LEFT ? far[at - 1] : 0;
+            double distance = to_star(lod, u, v, place, p, enough, INFINITY);
+            distance = to_star(lod, v, u, place, p, enough, distance);
             if (!(distance > 0 && distance < INFINITY))
                 continue;
             while (at > 0 && far[at - 1] < distance) {
