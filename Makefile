@@ -17,8 +17,17 @@ version := $(shell awk '/define PMESH_VERSION_/ { printf "%s%s", dot, $$3; \
 opt_release := -O3 -DNDEBUG
 opt_debug := -O0 -g
 opt_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
+# These need clang: see fuzz, msan and coverage below. Comparisons of parsers are
+# worth tracing; in the codec they are arithmetic and take half of the time.
+no_cmp := -fno-sanitize-coverage=trace-cmp
+opt_fuzz := -O2 -g -fsanitize=address,undefined,float-cast-overflow \
+  -fno-sanitize-recover=all -fsanitize=fuzzer-no-link
+opt_msan := -O1 -g -fsanitize=memory -fsanitize-memory-track-origins \
+  -fno-sanitize-recover=all -fsanitize=fuzzer-no-link
+opt_coverage := -O1 -g -fprofile-instr-generate -fcoverage-mapping
 ifndef opt_$(config)
-$(error config=$(config): there are release, debug and sanitize)
+$(error config=$(config): there are release, debug, sanitize, fuzz, msan and \
+  coverage)
 endif
 
 # -ffp-contract=off: the encoder's choices must not depend on the compiler.
@@ -28,10 +37,13 @@ c_flags := -std=c11 $(shared_flags) -Wall -Wextra -Wpedantic -Wshadow \
   -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Wcast-qual \
   -Wwrite-strings -Wundef -Wvla $(CPPFLAGS) $(CFLAGS)
 cxx_flags := -std=c++17 $(shared_flags) -Wall -Wextra $(CPPFLAGS) $(CXXFLAGS)
-link_flags := -pthread $(filter -fsanitize=%,$(opt_$(config))) $(LDFLAGS)
+link_flags := -pthread $(filter -fsanitize=% -fprofile-instr%,$(opt_$(config))) \
+  $(LDFLAGS)
 posix := -D_POSIX_C_SOURCE=200809L
 cgal := -isystem /usr/include/eigen3 -Wno-maybe-uninitialized
-bridge_libs := -ldraco -lmeshoptimizer -lz
+# Draco's archive, if there is one: its library allocates before main().
+bridge_libs := $(if $(filter /%,$(shell $(CXX) -print-file-name=libdraco.a)),\
+  -l:libdraco.a,-ldraco) -lmeshoptimizer -lz
 
 units ?= $(wildcard tests/unit/*.c)
 obj = $(patsubst %,$(B)/%.o,$(basename $(1)))
@@ -44,7 +56,13 @@ golden := $(B)/golden_bake $(B)/golden_decode
 reference := $(B)/reference $(B)/reference_agree
 reference_obj := $(call obj,$(wildcard tests/reference/ref_*.c)) \
   $(B)/reference_tables.o
+corrupt := $(B)/corrupt
+damage := $(B)/damage
 libs := $(B)/libpmesh.a $(B)/libpmesh-dec.a $(B)/libpmesh.so
+targets := $(patsubst tests/fuzz/target_%.c,%,\
+  $(wildcard tests/fuzz/target_*.c))
+fuzzers := $(addprefix $(B)/fuzz/,$(targets))
+libfuzzer := $(filter fuzz msan,$(config))
 
 ## all: libraries and program (default)
 all: $(libs) $(B)/pmesh
@@ -63,7 +81,19 @@ $(B)/reference_agree: $(call obj,$(addprefix tests/,$(addprefix reference/,\
   agree.c author.c chunks.c compare.c mutate.c random_mesh.c) \
   golden/golden_mesh.c unit/shapes.c) tools/trig.c) $(reference_obj) \
   $(B)/libpmesh.a
-$(libs) $(B)/pmesh $(B)/unit $(B)/train: $(B)/objects.list
+$(damage): $(call obj,tests/damage/damage.c tests/unit/shapes.c tools/trig.c) \
+  $(B)/libpmesh.a
+$(corrupt): $(call obj,$(wildcard tests/corrupt/*.c) \
+  tests/reference/chunks.c tests/golden/golden_mesh.c tests/unit/shapes.c) \
+  $(reference_obj) $(shared_obj) $(B)/libpmesh.a
+$(fuzzers): $(B)/fuzz/%: $(B)/tests/fuzz/target_%.o $(call obj,$(addprefix \
+  tests/,$(addprefix fuzz/,fuzz.c import.c pieces.c use.c) $(addprefix unit/,\
+  faces.c float_faces.c shapes.c)) $(if $(libfuzzer),,tests/fuzz/driver.c)) \
+  $(shared_obj) $(B)/libpmesh.a
+# Where the checks are on, and random bytes are to be refused, nobody mends.
+$(if $(libfuzzer),$(filter-out %/dec_raw,$(filter $(B)/fuzz/dec_% \
+  $(B)/fuzz/tool_%,$(fuzzers)))): $(B)/tests/fuzz/mutator.o
+$(libs) $(B)/pmesh $(B)/unit $(B)/train $(fuzzers): $(B)/objects.list
 
 inputs = $(filter %.o %.a,$^)
 quiet = $(if $(V),,@echo '  $@' && )
@@ -71,16 +101,20 @@ $(B)/%.a:
 	$(quiet)rm -f $@ && $(AR) rcs $@ $(inputs)
 $(B)/%.so:
 	$(quiet)$(CC) -shared -Wl,-soname,$(soname) $(inputs) $(link_flags) -lm -o $@
-$(B)/pmesh $(B)/unit $(B)/train:
+$(B)/pmesh $(B)/unit $(B)/train $(corrupt):
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bridge_libs) -lm -o $@
+$(fuzzers):
+	@mkdir -p $(@D)
+	$(quiet)$(CXX) $(inputs) $(link_flags) $(if $(libfuzzer),\
+	  -fsanitize=fuzzer) $(bridge_libs) -lm -o $@
 
-$(golden) $(reference):
+$(golden) $(reference) $(damage):
 	$(quiet)$(CC) $(inputs) $(link_flags) -lm -o $@
 
 $(B)/%.o: %.c $(B)/c.flags
 	@mkdir -p $(@D)
-	$(quiet)$(CC) $(c_flags) $(if $(filter tools/% tests/%,$<),$(posix)) \
-	  -MMD -MP -c $< -o $@
+	$(quiet)$(CC) $(c_flags) $(if $(filter tools/% tests/%,$<),$(posix),\
+	  $(if $(libfuzzer),$(no_cmp))) -MMD -MP -c $< -o $@
 $(B)/%.o: %.cpp $(B)/cxx.flags | $(B)/found
 	@mkdir -p $(@D)
 	$(quiet)$(CXX) $(cxx_flags) $(if $(filter tests/%,$<),$(cgal)) \
@@ -100,7 +134,7 @@ $(B)/found:
 
 # Written only when they change: objects are rebuilt when the compiler or its
 # flags are others, libraries and programs when a source came or went.
-$(B)/c.flags: line = $(CC) $(c_flags)
+$(B)/c.flags: line = $(CC) $(c_flags) $(if $(libfuzzer),$(no_cmp))
 $(B)/cxx.flags: line = $(CXX) $(cxx_flags)
 $(B)/objects.list: line = $(lib_obj) $(tool_obj) $(unit_obj)
 $(B)/c.flags $(B)/cxx.flags $(B)/objects.list: FORCE
@@ -122,7 +156,8 @@ test: deps
 
 ## check: the same without installing anything
 check:
-	+@$(submake) all $(B)/unit $(golden) $(reference)
+	+@$(submake) all $(B)/unit $(golden) $(reference) $(corrupt) $(damage) \
+	  $(fuzzers)
 	@tests/run.sh $(B)
 
 ## unit: only the unit tests; T=name selects some
@@ -172,6 +207,16 @@ check-reference:
 	@PMESH=$(B)/pmesh FILES=10000 MENDED=2000 DAMAGED=500 \
 	  tests/reference/run.sh
 
+## check-damage: every prefix of 30 files, 500,000 flipped bits (tests/damage)
+check-damage:
+	+@$(submake) $(B)/pmesh $(damage)
+	@PMESH=$(B)/pmesh LONG=1 tests/damage/run.sh
+
+## check-faults: every allocation fails, 200 kills (tests/faults)
+check-faults:
+	+@$(submake) $(B)/pmesh
+	@PMESH=$(B)/pmesh KILLS=200 STEP=1 tests/faults/run.sh
+
 ## check-gltf: scenes of tests/scene by Khronos' glTF validator (npm)
 check-gltf:
 	+@$(submake) $(B)/pmesh
@@ -182,6 +227,26 @@ check-gltf:
 	  VALIDATE="node tests/scene/validate.js" \
 	  TRANSFORM=$(CURDIR)/build/gltf/node_modules/.bin/gltf-transform \
 	  tests/scene/run.sh
+
+## fuzz: one target under libFuzzer, T=dec_oneshot TIME=60 (tests/fuzz; clang)
+## msan: the same with memory that was never written in view, T=, TIME=
+fuzz msan: fuzz-deps
+	+@$(submake) $(B)/pmesh
+	+@$(submake) config=$@ CC=clang CXX=clang++ build/$@/fuzz/$(fuzz_target)
+	@PMESH=$(B)/pmesh tests/fuzz/fuzz.sh build/$@/fuzz/$(fuzz_target) \
+	  $(or $(TIME),60)
+fuzz_target = $(or $(T),$(error T=NAME says what to fuzz: $(targets)))
+
+## fuzz-replay: what fuzzing found, and other odd files, to every target
+fuzz-replay:
+	+@$(submake) $(B)/pmesh $(fuzzers)
+	@PMESH=$(B)/pmesh tests/fuzz/run.sh
+
+## coverage: lines and branches that unit tests and fuzzing's files reach
+coverage: fuzz-deps
+	+@$(submake) config=coverage CC=clang CXX=clang++ build/coverage/unit \
+	  $(fuzzers:$(B)/%=build/coverage/%)
+	@tests/fuzz/coverage.sh build/coverage
 
 ## golden: write tests/golden anew; only for another version of the format
 golden: $(golden)
@@ -201,20 +266,26 @@ bench: bench-all
 ## bench-attributes: attributes of simplified meshes, against meshoptimizer
 ## bench-refine: time and uploads of moving among decoded splits
 ## bench-web: time to decode in a browser, against Draco and native code
+## bench-speed: speed and memory against other programs, and what they must be
+## bench-scale: time and memory of 70,000 to 8 million faces (takes long)
 ## bench-time: time and memory of the commands
-bench_programs := $(addprefix $(B)/bench_,attributes decode qem refine simplify)
+bench_programs := $(addprefix $(B)/bench_,attributes decode qem refine simplify speed)
 bench-%: bench-deps
 	+@$(submake) all $(bench_programs)
 	@PMESH=$(B)/pmesh tests/bench/$*.sh
 bench-web: web-deps
 $(bench_programs): $(B)/bench_%: $(B)/tests/bench/bench_%.o
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bench_libs) -o $@
-$(B)/bench_attributes: $(B)/tests/bench/attribute_measure.o $(shared_obj) \
-  $(B)/libpmesh.a
-$(B)/bench_attributes: bench_libs := $(bridge_libs)
+$(B)/bench_attributes: $(B)/tests/bench/attribute_measure.o
+$(B)/bench_simplify $(B)/bench_speed: $(B)/tests/bench/peers.o
+$(B)/bench_attributes $(B)/bench_speed: $(shared_obj) $(B)/libpmesh.a
 $(B)/bench_decode $(B)/bench_refine: $(B)/libpmesh-dec.a
+openmesh := -lOpenMeshTools -lOpenMeshCore
+$(B)/bench_attributes: bench_libs := $(bridge_libs)
 $(B)/bench_decode: bench_libs := -ldraco
-$(B)/bench_simplify: bench_libs := -lmeshoptimizer -lgmp -lmpfr
+$(B)/bench_simplify: bench_libs := $(openmesh) -lmeshoptimizer -lgmp -lmpfr
+$(B)/bench_speed: bench_libs := $(bridge_libs) $(openmesh) -ltinyobjloader \
+  -lgmp -lmpfr
 
 ## deps: install the Debian packages that building and testing need
 deps:
@@ -225,6 +296,9 @@ bench-deps:
 ## web-deps: those that `make web` and `make check-web` need
 web-deps:
 	@tests/install-deps.sh build web
+## fuzz-deps: those that `make fuzz`, `msan` and `coverage` need
+fuzz-deps:
+	@tests/install-deps.sh build fuzz
 ## cross-deps: those that `make check-cross` needs
 cross-deps:
 	@tests/install-deps.sh cross
@@ -280,7 +354,8 @@ help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
+.PHONY: fuzz msan fuzz-replay coverage fuzz-deps
 .PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps web-deps
-.PHONY: check-web install
+.PHONY: check-web check-damage check-faults install
 .PHONY: uninstall clean help FORCE
 -include $(shell find $(B) -name '*.d' 2>/dev/null)

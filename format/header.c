@@ -304,7 +304,9 @@ pmesh_status pmesh_header_read(pmesh_cursor *in, pmesh_header_chunk *h,
         *rule = read_levels(in, h);
     if (!*rule)
         *rule = check_limits(h);
-    if (!*rule && (in->overrun || in->next != in->end))
+    /* What ends too early reads as 0, and may break any rule before. */
+    if ((in->overrun && in->next == in->end) ||
+        (!*rule && (in->overrun || in->next != in->end)))
         *rule = "SPEC 5.3: the header's size does not fit its fields";
     return *rule ? PMESH_E_CORRUPT : PMESH_OK;
 }

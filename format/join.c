@@ -143,10 +143,11 @@ static pmesh_status check(pmesh_codec *c, const pmesh_fans *fans,
     if (!v_has || !u_has)
         return corrupt(c, "SPEC 6.3: a vertex without faces");
     if (m->vertex_count == m->vertex_capacity ||
-        m->face_capacity - m->face_count < faces ||
-        c->sizes.block_faces - c->block.face_count < faces)
+        m->face_capacity - m->face_count < faces)
         return corrupt(c, "SPEC 6.3: more splits than the header declares");
-    return PMESH_OK;
+    return c->sizes.block_faces - c->block.face_count >= faces
+               ? PMESH_OK
+               : corrupt(c, "SPEC 5.3: a block with more faces than declared");
 }
 
 /* ---- applying ------------------------------------------------------------ */

@@ -94,6 +94,8 @@ pmesh_status pmesh_scene_head_read(pmesh_cursor *in, pmesh_scene_head *h,
     *rule = read_levels(in, h);
     if (!*rule && (in->overrun || h->mesh_count == 0))
         *rule = "SPEC 11.2: a count is out of range";
+    if (in->overrun && in->next == in->end) /* it reads as 0 from there on */
+        *rule = "SPEC 11.2: the header's size does not fit its fields";
     return *rule ? PMESH_E_CORRUPT : PMESH_OK;
 }
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Usage: tests/install-deps.sh [--check] GROUP...
-# of the groups build, test, bench, cross and web.
+# of the groups build, test, bench, cross, fuzz and web.
 #
 # Installs the Debian packages of what is missing, by apt-get as root or
 # through sudo. If nothing is missing it does nothing, offline too. --check
@@ -47,6 +47,8 @@ group_bench() {
     need draco program draco_encoder
     need libcgal-dev header CGAL/version.h
     need libeigen3-dev header eigen3/Eigen/Core
+    need libopenmesh-dev header OpenMesh/Core/System/config.h
+    need libtinyobjloader-dev header tiny_obj_loader.h
     need python3 program python3
     need time test -x /usr/bin/time
 }
@@ -70,6 +72,13 @@ group_cross() {
     need wasi-libc test -e /usr/lib/wasm32-wasi/libc.a
     need libclang-rt-dev-wasm32 links clang --target=wasm32-wasi
     need nodejs program node
+}
+
+group_fuzz() {
+    need clang program clang
+    need libclang-rt-dev links clang -fsanitize=address
+    need llvm program llvm-cov
+    need python3 program python3
 }
 
 group_web() {

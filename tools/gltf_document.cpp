@@ -250,12 +250,12 @@ void taker::code_primitive(gltf_document &to, const gltf_primitive &p,
     record["attributes"] = set(p, stream.channels, 0);
     record["attributes"]["POSITION"] = gltf_document::object();
     for (uint32_t i = 1; i < p.set_count; i++)
-        record["targets"].push_back(set(p, stream.channels, i));
+        gltf_list(record, "targets").push_back(set(p, stream.channels, i));
     for (const char *member : { "indices", "mode", "targets" })
         to.erase(member);
     to["attributes"] = gltf_document::object();
     gltf_erase_extension(to, "KHR_draco_mesh_compression");
-    to["extensions"][GLTF_PROGRESSIVE] = std::move(record);
+    gltf_object(to, "extensions")[GLTF_PROGRESSIVE] = std::move(record);
 }
 
 void taker::meshes()
@@ -284,8 +284,8 @@ void taker::meshes()
 
 size_t taker::add_view(size_t resource, size_t size)
 {
-    doc["bufferViews"].push_back({ { "buffer", resource },
-                                   { "byteLength", size } });
+    gltf_list(doc, "bufferViews").push_back({ { "buffer", resource },
+                                              { "byteLength", size } });
     view_use.push_back(NEEDED);
     return view_use.size() - 1;
 }
@@ -412,7 +412,7 @@ void taker::free_places()
             doc.erase(list.name);
         root[list.name] = std::move(numbers);
     }
-    doc["extensions"][GLTF_PROGRESSIVE] = std::move(root);
+    gltf_object(doc, "extensions")[GLTF_PROGRESSIVE] = std::move(root);
 }
 
 /* Names in extensionsUsed and extensionsRequired that are true no more. */
@@ -456,7 +456,7 @@ gltf_parts taker::take()
     extensions();
     doc.erase("buffers");
     for (const gltf_bytes &bytes : parts.resources)
-        doc["buffers"].push_back({ { "byteLength", bytes.size() } });
+        gltf_list(doc, "buffers").push_back({ { "byteLength", bytes.size() } });
     parts.document = doc.dump();
     return std::move(parts);
 }

@@ -10,7 +10,14 @@
 
 namespace {
 
-const gltf_json no_items = gltf_json::array();
+/* Made when it is first asked for: before main() nobody tells of memory that
+ * lacks. */
+const gltf_json &no_items()
+{
+    static const gltf_json none = gltf_json::array();
+    return none;
+}
+
 const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
 
 std::string quoted(const std::string &name)
@@ -80,7 +87,7 @@ const gltf_json &builder::list(const char *name) const
 {
     const auto found = in.find(name);
     if (found == in.end())
-        return no_items;
+        return no_items();
     if (!found->is_array())
         throw std::runtime_error(std::string(name) + " is not a list");
     return *found;
@@ -96,7 +103,7 @@ gltf_item builder::item(const char *name, size_t number) const
 
 uint32_t builder::add(const char *name, gltf_json value)
 {
-    out[name].push_back(std::move(value));
+    gltf_list(out, name).push_back(std::move(value));
     return static_cast<uint32_t>(out[name].size() - 1);
 }
 
@@ -397,7 +404,7 @@ gltf_json builder::primitive(const gltf_item &from)
         for (const gltf_json &target : *targets) {
             if (!target.is_object())
                 from.fail("a target is not an object");
-            to["targets"].push_back(
+            gltf_list(to, "targets").push_back(
                 attributes(from, target, gltf_json::object()));
         }
     }
@@ -466,7 +473,7 @@ void builder::node(const gltf_item &from)
             from.fail("children is not a list");
         to["children"] = gltf_json::array();
         for (const gltf_json &child : *children)
-            to["children"].push_back(
+            gltf_list(to, "children").push_back(
                 gltf_to_id(from, "child", child, list("nodes").size()));
     }
     add("nodes", std::move(to));

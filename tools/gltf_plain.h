@@ -16,6 +16,29 @@
 #include "tools/gltf.h"
 
 using gltf_json = nlohmann::json;
+
+/*
+ * of[name], which becomes an object, or a list, if it is not there. nlohmann's
+ * operator[] and push_back make these of null, too; but where memory runs out on
+ * the way, they leave a value behind whose destructor crashes.
+ */
+template <class json>
+json &gltf_object(json &of, const char *name)
+{
+    json &at = of[name];
+    if (at.is_null())
+        at = json::object();
+    return at;
+}
+
+template <class json>
+json &gltf_list(json &of, const char *name)
+{
+    json &at = of[name];
+    if (at.is_null())
+        at = json::array();
+    return at;
+}
 using gltf_bytes = std::vector<uint8_t>;
 
 struct gltf_plain {

@@ -368,8 +368,13 @@ static const char *scan_special(const char *p, const char *end, double *out)
     }
     if (end - p < 6 || memcmp(p, "1.#", 3) != 0)
         return p;
-    *out = has_word(p + 3, end, "inf") ? (double)INFINITY : (double)NAN;
-    for (p += 3; p < end && is_letter(*p); p++)
+    const char *word = p + 3;
+    const bool infinite = has_word(word, end, "inf");
+    if (!infinite && !has_word(word, end, "ind") &&
+        !has_word(word, end, "qnan") && !has_word(word, end, "snan"))
+        return p; /* 1. and a comment */
+    *out = infinite ? (double)INFINITY : (double)NAN;
+    for (p = word; p < end && is_letter(*p); p++)
         ;
     while (is_digit(p, end))
         p++;

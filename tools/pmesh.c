@@ -12,6 +12,7 @@
 #include "format/pmesh.h"
 #include "tools/args.h"
 #include "tools/cmd.h"
+#include "tools/exhausted.h"
 #include "tools/file.h"
 #include "tools/report.h"
 
@@ -135,6 +136,7 @@ int main(int argc, char **argv)
 
     occupy_descriptors();
     file_catch_signals();
+    exhausted_catch();
     int code = run(argc, argv);
 
     errno = 0;

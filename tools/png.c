@@ -1,6 +1,22 @@
 /* SPDX-License-Identifier: MIT */
-/* The one file that compiles stb_image_write. */
+/* The one file that compiles stb_image_write. Its own zlib does not check its
+ * allocations: ours does, and packs better. */
 #include <limits.h>
+
+#include "tools/pack.h"
+
+static unsigned char *compress_rows(unsigned char *data, int size, int *packed,
+                                    int quality)
+{
+    asset_bytes out = { 0 };
+    (void)quality;
+    if (!pack_zlib(data, (size_t)size, &out) || out.size > INT_MAX) {
+        asset_bytes_free(&out);
+        return NULL;
+    }
+    *packed = (int)out.size;
+    return out.data;
+}
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -15,6 +31,7 @@
 #endif
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
+#define STBIW_ZLIB_COMPRESS compress_rows
 #include <stb/stb_image_write.h>
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop

@@ -190,7 +190,7 @@ void scene_writer::pack_draco(gltf_document &p, scene_array positions,
     indices.component_type = positions.count > 0xFFFF ? GLTF_U32 : GLTF_U16;
     p["indices"] = add_described(indices, indices.count, false);
     align(4);
-    p["extensions"][GLTF_DRACO] = {
+    gltf_object(p, "extensions")[GLTF_DRACO] = {
         { "bufferView", place("bufferViews", free_views,
                               { { "buffer", 0 },
                                 { "byteOffset", bin.size() },

@@ -238,8 +238,8 @@ void scene_geometry::choose(uint32_t material)
             corners.push_back(number[wedge]);
         }
     if (corners.empty()) {
-        wedges.push_back(0);
-        corners.assign(3, 0);
+        wedges.assign(3, 0);
+        corners = { 0, 1, 2 };
     }
 }
 

@@ -47,7 +47,8 @@ public:
 
     /* Chooses the faces of one material; their vertices are numbered in order
      * of appearance. A material without faces at this level gets one of no
-     * area, since a primitive must have some. */
+     * area, since a primitive must have some: of three vertices in one place,
+     * as an index that comes twice is an error to many. */
     void choose(uint32_t material);
 
     scene_array indices() const;

@@ -12,12 +12,18 @@
 
 namespace {
 
-const gltf_document nothing = gltf_document::object();
+/* Made when it is first asked for: before main() nobody tells of memory that
+ * lacks. */
+const gltf_document &nothing()
+{
+    static const gltf_document none = gltf_document::object();
+    return none;
+}
 
 const gltf_document &member(const gltf_document &of, const char *name)
 {
     const auto found = of.is_object() ? of.find(name) : of.end();
-    return found != of.end() ? *found : nothing;
+    return found != of.end() ? *found : nothing();
 }
 
 double factor(const gltf_document &of, const char *name, double fallback)
@@ -149,7 +155,7 @@ void scene_writer::library_map(const char *word, const gltf_document &slot)
     const size_t image = image_of(slot);
     const char *ending = image == SIZE_MAX ? nullptr : library_image(image);
     const gltf_document &uri =
-        image == SIZE_MAX ? nothing : member(doc["images"].at(image), "uri");
+        image == SIZE_MAX ? nothing() : member(doc["images"].at(image), "uri");
 
     if (ending)
         asset_printf(&to->mtl, "%s %s-%zu.%s\n", word, to->stem, image,

@@ -85,7 +85,7 @@ void scene_writer::chain_node(size_t node, const std::vector<size_t> &chain)
                 nodes[node].erase(member);
             }
         nodes[node].erase("mesh");
-        nodes[node]["children"].push_back(nodes.size());
+        gltf_list(nodes[node], "children").push_back(nodes.size());
         node = nodes.size();
         nodes.push_back(std::move(inner));
     }
@@ -97,8 +97,11 @@ void scene_writer::chain_node(size_t node, const std::vector<size_t> &chain)
         nodes.push_back(std::move(coarse));
     }
     shares.push_back(0);
-    nodes[node]["extensions"]["MSFT_lod"] = { { "ids", std::move(ids) } };
-    nodes[node]["extras"]["MSFT_screencoverage"] = std::move(shares);
+    gltf_object(nodes[node], "extensions")["MSFT_lod"] = {
+        { "ids", std::move(ids) }
+    };
+    gltf_object(nodes[node], "extras")["MSFT_screencoverage"] =
+        std::move(shares);
 }
 
 void scene_writer::lods()

@@ -9,6 +9,7 @@
 #include <new>
 #include <utility>
 
+#include "tools/exhausted.h"
 #include "tools/gltf_document.h"
 #include "tools/pack.h"
 
@@ -162,6 +163,19 @@ void note_kept(const gltf_json &in, asset *notes)
                    "are", kept);
 }
 
+/* They are kept as they are, and whoever takes meshes out walks over them. */
+void check_nodes(const gltf_model &model)
+{
+    gltf_instance *instances = nullptr;
+    size_t count = 0;
+    asset_error error = {};
+
+    const bool tree = gltf_scene_walk(&model, &instances, &count, &error);
+    free(instances);
+    if (!tree)
+        fail(error);
+}
+
 void read(const gltf_source &source, holder *held, scene_parts *out)
 {
     gltf_budget budget = gltf_budget_for(source.file_size);
@@ -175,6 +189,7 @@ void read(const gltf_source &source, holder *held, scene_parts *out)
     for (size_t i = 0; i < model.accessor_count; i++)
         if (!gltf_accessor_prepare(&model.accessors[i], &budget, &error))
             fail(error);
+    check_nodes(model);
 
     const gltf_json in =
         gltf_json::parse(source.json, source.json + source.json_size);
@@ -266,6 +281,8 @@ bool scene_is_worth_it(const uint8_t *data, size_t size)
         return is_list(in, "meshes", 2) || is_list(in, "scenes", 2) ||
                is_list(in, "nodes", 2) || in.contains("extensions") ||
                has_looks(in) || has_own_attributes(in);
+    } catch (const std::bad_alloc &) {
+        exhausted_end(); /* "no" would be another file, without a word */
     } catch (...) {
         return false;
     }

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <new>
 
+#include "tools/exhausted.h"
 #include "tools/pack.h"
 #include "tools/scene_writer.h"
 
@@ -94,7 +95,7 @@ size_t scene_writer::place(const char *list, std::vector<size_t> &free,
                      gltf_document value)
 {
     if (free.empty()) {
-        doc[list].push_back(std::move(value));
+        gltf_list(doc, list).push_back(std::move(value));
         return doc[list].size() - 1;
     }
     const size_t at = free.back();
@@ -133,7 +134,7 @@ gltf_document scene_writer::view_of(const scene_array &data, int target)
         const size_t stride = data.bytes.size() / data.count;
         const gltf_bytes packed =
             gltf_pack(data.bytes, data.count, stride, indices);
-        view["extensions"][GLTF_MESHOPT] = {
+        gltf_object(view, "extensions")[GLTF_MESHOPT] = {
             { "buffer", 0 },
             { "byteOffset", bin.size() },
             { "byteLength", packed.size() },
@@ -154,7 +155,7 @@ gltf_document scene_writer::accessor_of(const scene_array &data, size_t count,
                                         bool bounds)
 {
     static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
-    gltf_document accessor;
+    gltf_document accessor = gltf_document::object();
 
     accessor["componentType"] = data.component_type;
     if (data.normalised)
@@ -230,7 +231,7 @@ void scene_writer::primitive(gltf_document &p)
         for (const auto &[name, one] : target.items())
             to[name] = add(mesh.differences(form(one)), TARGET_VERTICES,
                            name == "POSITION");
-        p["targets"].push_back(std::move(to));
+        gltf_list(p, "targets").push_back(std::move(to));
     }
     if (!style.stream)
         gltf_erase_extension(p, GLTF_PROGRESSIVE);
@@ -387,7 +388,7 @@ void scene_writer::use_extension(const char *name, bool required)
         for (const gltf_document &one : doc.value(list, gltf_document::array()))
             there = there || one == name;
         if (!there)
-            doc[list].push_back(name);
+            gltf_list(doc, list).push_back(name);
     }
 }
 
@@ -399,10 +400,10 @@ void scene_writer::add_stream()
         gltf_document &view = doc["bufferViews"][at];
         view["byteOffset"] = bin.size() + view["byteOffset"].get<size_t>();
     }
-    doc["extensions"][GLTF_PROGRESSIVE] = { { "bufferView",
+    gltf_object(doc, "extensions")[GLTF_PROGRESSIVE] = { { "bufferView",
                                               doc["bufferViews"].size() } };
     use_extension(GLTF_PROGRESSIVE, false);
-    doc["bufferViews"].push_back({ { "buffer", 0 },
+    gltf_list(doc, "bufferViews").push_back({ { "buffer", 0 },
                                    { "byteOffset", bin.size() },
                                    { "byteLength", style.stream->size } });
     bin.insert(bin.end(), style.stream->data,
@@ -470,7 +471,7 @@ void scene_writer::write(asset_bytes *out)
         doc["buffers"][0]["uri"] =
             "data:application/octet-stream;base64," + base64(bin);
     if (style.meshopt) {
-        doc["buffers"].push_back(
+        gltf_list(doc, "buffers").push_back(
             { { "byteLength", unpacked },
               { "extensions", { { GLTF_MESHOPT, { { "fallback", true } } } } } });
         use_extension(GLTF_MESHOPT, true);
@@ -526,6 +527,8 @@ bool scene_find_stream(const uint8_t *data, size_t data_size, size_t *offset,
         if (left - text < 8 || !find_view(data + 20, text, offset, size) ||
             *offset > left - text - 8)
             return false;
+    } catch (const std::bad_alloc &) {
+        exhausted_end();
     } catch (...) {
         return false; /* a GLB of another kind */
     }

@@ -23,5 +23,7 @@ echo "== time to decode"
 tests/bench/decode.sh
 echo "== time of moving between levels"
 tests/bench/refine.sh
+echo "== speed and memory against other programs"
+tests/bench/speed.sh
 echo "== time and memory"
 tests/bench/time.sh

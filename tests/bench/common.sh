@@ -41,6 +41,20 @@ faces() {
     awk '$1 == "f" { n += NF - 3 } END { print n + 0 }' "$1"
 }
 
+# What was measured, on what.
+machine() {
+    date -u '+%Y-%m-%d'
+    uname -srm
+    sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | sort | uniq -c |
+        awk '{ $1 = $1 " x"; print }'
+    awk '/^MemTotal/ { printf "%.0f GiB\n", $2 / 1048576 }' /proc/meminfo
+    ${CXX:-c++} --version | sed -n 1p
+    dpkg-query -W -f '${Package} ${Version}\n' libmeshoptimizer-dev \
+        libcgal-dev libopenmesh-dev libdraco-dev libtinyobjloader-dev \
+        libtinygltf-dev 2>/dev/null
+    echo "load at the end: $(cut -d ' ' -f 1-3 /proc/loadavg)"
+}
+
 # An OBJ file without anything but positions and polygons.
 positions_only() {
     awk '

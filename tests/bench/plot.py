@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the benchmarks' tables: plot.py size|rate TABLE.csv PICTURE.svg
+"""Draws the benchmarks' tables: plot.py size|rate|speed|scale TABLE.csv
+PICTURE.svg
 
 size: bytes of complete files relative to Draco, a bar for each profile, its
 parts on top of each other. rate: bytes against distance, a panel a model.
+speed: figures as shares of what they must be. scale: time and memory by face
+against faces.
 """
 import csv
 import math
@@ -246,8 +249,115 @@ def draw_rate(rows, path):
     svg.save(path)
 
 
+# ---- speed
+
+def geometric_mean(values):
+    return math.exp(sum(map(math.log, values)) / len(values))
+
+
+def share(figure, bound):
+    """Of a bound: 1 just meets it, less is better."""
+    value = float(bound[1:])
+    return figure / value if bound[0] == "<" else value / figure
+
+
+def draw_speed(rows, path):
+    bounded = [r for r in rows if r["must"] or r["aim"]]
+    names = unique(r["what"] for r in bounded)
+    models = unique(r["model"] for r in bounded)
+    left, right, step = 470, 1000, 24
+    svg = Svg(1240, 150 + step * len(names), "What is asked of speed and memory",
+              "geometric means of " + ", ".join(models) + "; left of the line: "
+              "met; bar: to what must be, circle: to what is aimed at")
+    x_of = Log([1 / 12, 12], left, right)
+    bottom = 110 + step * len(names)
+    for value in (0.1, 0.2, 0.5, 1, 2, 5, 10):
+        x = x_of(value)
+        svg.line([(x, 90), (x, bottom)], "#c0392b" if value == 1 else GRID,
+                 1.6 if value == 1 else 1, "6 4" if value == 1 else "")
+        svg.text(x, bottom + 16, f"{value:g}", "middle", SOFT)
+    svg.text((left + right) / 2, bottom + 34, "share of the bound (logarithmic)",
+             "middle", SOFT)
+
+    def place(value):
+        return x_of(min(max(value, 1 / 12), 12))
+
+    for i, name in enumerate(names):
+        mine = [r for r in bounded if r["what"] == name]
+        figure = geometric_mean([float(r["figure"]) for r in mine])
+        y = 100 + step * i
+        svg.text(left - 12, y + 11, name, "end")
+        must, aim = mine[0]["must"], mine[0]["aim"]
+        if must:
+            x = place(share(figure, must))
+            svg.rect(min(x, x_of(1)), y, abs(x - x_of(1)) + 1, 14,
+                     "#d9622b" if share(figure, must) > 1 else "#2a9d5c")
+        if aim:
+            svg.dot(place(share(figure, aim)), y + 7, INK, 4)
+        unit = "" if mine[0]["peer"] else " " + mine[0]["unit"]
+        asked = (f"{must or aim}{'' if must else ' aim'}"
+                 .replace("<", "\u2264 ").replace(">", "\u2265 "))
+        svg.text(right + 12, y + 11, f"{figure:.3g}{unit}  ({asked})")
+    svg.save(path)
+
+
+# ---- scale
+
+SCALED = {"contraction with log": "#3d7cc9", "whole bake": "#2a9d5c",
+          "decode": "#8e6bbf", "meshopt_simplify": "#d9622b"}
+
+
+def scale_panel(svg, rows, key, title, box):
+    left, top, width, height = box
+    points = {}
+    for r in rows:
+        if r[key]:
+            points.setdefault(r["what"], []).append(
+                (int(r["faces"]), float(r[key])))
+    every = [p for line in points.values() for p in line]
+    x_of = Log([x for x, _ in every], left, left + width)
+    high = 1.15 * max(y for _, y in every)
+    for value in (1e5, 1e6, 1e7):
+        if x_of.low <= value <= x_of.high:
+            svg.line([(x_of(value), top), (x_of(value), top + height)])
+            svg.text(x_of(value), top + height + 17, f"{value:,.0f}", "middle",
+                     SOFT)
+    tick = 10 ** math.floor(math.log10(high / 2))
+    tick *= 5 if high / tick > 12 else 2 if high / tick > 6 else 1
+    for i in range(int(high / tick) + 1):
+        y = top + height * (1 - i * tick / high)
+        svg.line([(left, y), (left + width, y)])
+        svg.text(left - 8, y + 4, f"{i * tick:g}", "end", SOFT)
+    svg.text(left, top - 10, title, weight="bold", size=13)
+    svg.text(left + width / 2, top + height + 36, "faces", "middle", SOFT)
+    for what, line in points.items():
+        drawn = [(x_of(x), top + height * (1 - y / high)) for x, y in line]
+        svg.line(drawn, SCALED[what], 2)
+        for x, y in drawn:
+            svg.dot(x, y, SCALED[what])
+        svg.text(drawn[-1][0] + 8, drawn[-1][1] + 4,
+                 what if key == "us_per_face" else "", fill=SCALED[what])
+
+
+def draw_scale(rows, path):
+    svg = Svg(1120, 460, "Growth with the size of the mesh",
+              "generated meshes, one core; memory is what the allocator hooks "
+              "gave out at most, the input not counted")
+    x = 24
+    for what, color in SCALED.items():
+        svg.line([(x, 82), (x + 24, 82)], color, 2.4)
+        svg.text(x + 31, 86, what)
+        x += 60 + 6.4 * len(what)
+    scale_panel(svg, rows, "us_per_face", "CPU microseconds per face",
+                (70, 130, 380, 270))
+    scale_panel(svg, rows, "bytes_per_face", "peak memory, bytes per face",
+                (640, 130, 380, 270))
+    svg.save(path)
+
+
 def main():
-    kinds = {"size": draw_size, "rate": draw_rate}
+    kinds = {"size": draw_size, "rate": draw_rate, "speed": draw_speed,
+             "scale": draw_scale}
     if len(sys.argv) != 4 or sys.argv[1] not in kinds:
         sys.exit(__doc__)
     with open(sys.argv[2], newline="", encoding="utf-8") as file:

@@ -18,6 +18,11 @@ END
 check 'a glTF file of two meshes' 0 bake two.gltf -o two.pmesh --json
 ok 'it is a scene' out '"scene": true'
 ok 'of two meshes' test "$(json meshes)" = 2
+for nodes in '"children":[0]' '"children":[1]' '"children":[1],"mesh":0'; do
+    sed "s/\"mesh\":0,\"name\":\"near\"/$nodes/" two.gltf >loop.gltf
+    check "nodes that are no tree ($nodes)" 3 bake loop.gltf -o loop.pmesh
+    ok 'are named' err 'is met twice: the nodes are not a tree'
+done
 check '--merge' 0 bake two.gltf -o one.pmesh --merge --json
 ok '--merge makes one mesh' out '"scene": false'
 check 'info of a scene' 0 info two.pmesh --levels

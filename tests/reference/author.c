@@ -215,9 +215,10 @@ static bool within(const void *m, const void *part, size_t size)
 }
 
 /* As the model expects, or not; positions seldom far off. */
-static int choose_any(void *user, const ref_model *m)
+static int choose_any(void *user, const ref_model *m, int given)
 {
     writer *w = user;
+    (void)given;
     const ref *r = w->r;
     if (!m)
         return (int)shape_random(&w->seed, 2);
@@ -284,9 +285,10 @@ static shape_bytes bake_spindle(uint32_t ring, bool textured)
 }
 
 /* Splits the wide vertex alone; all else as expected. */
-static int choose_wide(void *user, const ref_model *m)
+static int choose_wide(void *user, const ref_model *m, int given)
 {
     writer *w = user;
+    (void)given;
     const ref *r = w->r;
     if (within(m, r->flag, sizeof r->flag))
         return ref_degree(r, r->order[r->order_at - 1]) == w->ring;

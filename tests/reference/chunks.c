@@ -71,6 +71,11 @@ static uint32_t put_chunk(shape_bytes *out, const chunk *c)
     return crc;
 }
 
+static bool is_header(const chunk *c)
+{
+    return c->type == CHUNK_HEADER || c->type == CHUNK_SCENE;
+}
+
 /* Twice: the first time tells the checksums that the header's hash is of. */
 shape_bytes chunks_put_together(chunks *c)
 {
@@ -83,12 +88,12 @@ shape_bytes chunks_put_together(chunks *c)
         bytes_put(&out, signature, SIGNATURE);
         for (uint32_t i = 0; i < c->count; i++) {
             const uint32_t crc = put_chunk(&out, &c->at[i]);
-            if (c->at[i].type != CHUNK_HEADER && c->at[i].type != CHUNK_END &&
+            if (!is_header(&c->at[i]) && c->at[i].type != CHUNK_END &&
                 c->at[i].type < 128)
                 hash = ref_hash_crc(hash, crc);
         }
         chunk *header = &c->at[0];
-        const bool has_hash = c->count > 0 && header->type == CHUNK_HEADER;
+        const bool has_hash = c->count > 0 && is_header(header);
         for (size_t i = 0; has_hash && i < 8 && HASH_AT + i < header->size; i++)
             header->data[HASH_AT + i] = (uint8_t)(hash >> (8 * i));
     }

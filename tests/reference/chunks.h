@@ -12,7 +12,9 @@ enum {
     CHUNK_HEADER = 1,
     CHUNK_BASE = 2,
     CHUNK_LAST = 4, /* a block */
-    CHUNK_END = 5
+    CHUNK_END = 5,
+    CHUNK_POSITIONS = 7,
+    CHUNK_SCENE = 8
 };
 
 typedef struct chunk {

@@ -43,9 +43,11 @@ typedef struct ref_number {
     ref_model length[32], top[32][3];
 } ref_number;
 
-/* Makes a stream instead of reading one: what is read is what choose() says. */
+/* Makes a stream instead of reading one: what is read is what choose() says.
+ * `given` is what the payload says, as long as it was followed. */
 typedef struct ref_author {
-    int (*choose)(void *user, const ref_model *m); /* m: NULL for raw bits */
+    int (*choose)(void *user, const ref_model *m, int given); /* raw: no m */
+    uint32_t (*pick)(void *user, uint32_t cells, uint32_t given);
     void *user;
     uint8_t *data;
     size_t size, room;
@@ -67,7 +69,7 @@ int ref_bit(ref_coder *c, ref_model *m);
 int ref_bit2(ref_coder *c, ref_model *m, ref_model *n);
 uint64_t ref_raw(ref_coder *c, int bits);
 uint64_t ref_read_number(ref_coder *c, ref_number *n);
-uint64_t ref_uniform(ref_coder *c, uint64_t n); /* no author can */
+uint64_t ref_uniform(ref_coder *c, uint64_t n);
 void ref_author_end(ref_author *a);             /* the last bytes */
 
 /* ---- integers (2) ------------------------------------------------------- */

@@ -174,26 +174,26 @@ static void normalise(ref_coder *c)
         c->range *= 256;
         if (c->author)
             write_byte(c->author);
-        else
-            c->code = c->code * 256 + next_byte(c);
+        c->code = c->code * 256 + next_byte(c);
     }
 }
 
 void ref_coder_start(ref_coder *c, const uint8_t *data, const uint8_t *end)
 {
     *c = (ref_coder){ data, end, UINT32_MAX, 0, c->author };
-    for (int i = 0; i < 4 && !c->author; i++)
+    for (int i = 0; i < 4; i++)
         c->code = c->code * 256 + next_byte(c);
 }
 
 /* Is code in the upper part, from `bound` on? Goes on with that part. */
 static int above(ref_coder *c, uint32_t bound, const ref_model *m)
 {
-    const int bit = c->author ? c->author->choose(c->author->user, m)
-                              : c->code >= bound;
+    const int given = c->code >= bound;
+    const int bit =
+        c->author ? c->author->choose(c->author->user, m, given) : given;
     if (bit && c->author)
         c->author->low += bound;
-    else if (bit)
+    if (bit)
         c->code -= bound;
     return bit;
 }
@@ -270,6 +270,10 @@ uint64_t ref_uniform(ref_coder *c, uint64_t n)
     if (high > cells - 1) {
         REF_SEEN(uniform_beyond);
         high = cells - 1;
+    }
+    if (c->author && c->author->pick) {
+        high = c->author->pick(c->author->user, cells, high);
+        c->author->low += (uint64_t)unit * high;
     }
     c->code -= unit * high;
     c->range = high < cells - 1 ? unit : c->range - unit * (cells - 1);

@@ -458,7 +458,7 @@ static void read_attribute(ref *r, subject *s, const neighbours *a)
         value[k] = read_component(r, s, a, k, off, &far);
     if (s->mirrored) {
         ref_check(r, value[0] <= 2 * s->c && value[1] <= 2 * s->c,
-                  "6.6: a value out of range");
+                  "6.6: a mirrored value out of range");
         mirror(s->c, value);
     }
     for (int k = 0; k < s->count; k++)

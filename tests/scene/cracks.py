@@ -3,6 +3,7 @@
 
 No mesh of an output has more boundary edges than it has in the input. Edges are
 told by their positions, so a seam is no boundary as long as it does not open.
+No face of an output names a vertex twice.
 """
 import collections
 import sys
@@ -42,6 +43,11 @@ def boundary(g, mesh, apart):
     return open_edges([f for faces in lists for f in faces])
 
 
+def faces_of_fewer_corners(g, mesh):
+    return [f for p in mesh['primitives'] if p.get('mode', 4) >= 4
+            for f in g.faces(p) if len(set(f)) < 3]
+
+
 first = Gltf(sys.argv[1])
 apart = [is_apart(first, m) for m in first.json['meshes']]
 limits = [boundary(first, m, a) for m, a in zip(first.json['meshes'], apart)]
@@ -52,5 +58,8 @@ for path in sys.argv[2:]:
         n = boundary(g, mesh, apart[i])
         if n > limits[i]:
             print(path, 'mesh', i, n, 'boundary edges instead of', limits[i])
+            bad += 1
+        for face in faces_of_fewer_corners(g, mesh):
+            print(path, 'mesh', i, 'has the face', face)
             bad += 1
 sys.exit(bad > 0)

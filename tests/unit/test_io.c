@@ -153,6 +153,7 @@ TEST(number_parse_takes_all_usual_forms)
     CHECK(isinf(parse("1e400")) && isinf(parse("-Infinity")));
     CHECK(isnan(parse("nan")) && isnan(parse("-nan(ind)")));
     CHECK(isnan(parse("-1.#IND")) && isinf(parse("1.#INF00")));
+    CHECK(isnan(parse("1.#QNAN0")));
 }
 
 TEST(number_parse_stops_at_the_end_and_at_strangers)
@@ -166,6 +167,8 @@ TEST(number_parse_stops_at_the_end_and_at_strangers)
     CHECK(asset_number_parse(text, text + 4, &value) == text + 2);
     text = "1.5e+";
     CHECK(asset_number_parse(text, text + 5, &value) == text + 3);
+    text = "1.#note";
+    CHECK(asset_number_parse(text, text + 7, &value) == text + 2);
     text = "123";
     CHECK(asset_number_parse(text, text + 2, &value) == text + 2);
     CHECK(value == 12);

@@ -253,13 +253,15 @@ TEST(material_names_travel)
 
 typedef struct meter {
     unsigned calls, fail_at;
+    bool and_on; /* all behind fail, too */
     size_t bytes;
 } meter;
 
 static void *meter_alloc(void *user, size_t size)
 {
     meter *m = user;
-    if (++m->calls == m->fail_at)
+    if (++m->calls == m->fail_at ||
+        (m->and_on && m->fail_at && m->calls > m->fail_at))
         return NULL;
     m->bytes += size;
     return malloc(size);
@@ -296,9 +298,9 @@ TEST(decoder_allocates_twice)
 
 /* True as long as the bake made as many allocations as were to succeed. */
 static bool bake_fails(const shape_mesh *s, pmesh_base_coder coder,
-                       unsigned fail)
+                       unsigned fail, bool and_on)
 {
-    meter m = { .fail_at = fail };
+    meter m = { .fail_at = fail, .and_on = and_on };
     pmesh_encoder_config config = config_of(PMESH_BALANCED, PMESH_OPTIMAL, 12);
     config.allocator = (pmesh_allocator){ meter_alloc, meter_release, &m };
     config.lossless = 1;
@@ -319,7 +321,8 @@ TEST(encoder_survives_every_failing_allocation)
     shape_mesh *s = shape_make(SHAPE_SPHERE, 6, 3);
     for (int coder = 0; coder < 2; coder++)
         for (unsigned fail = 1;
-             bake_fails(s, (pmesh_base_coder)coder, fail);)
+             bake_fails(s, (pmesh_base_coder)coder, fail, false) &&
+             bake_fails(s, (pmesh_base_coder)coder, fail, true);)
             fail++;
     shape_free(s);
 }

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * damage FLIPS FILE... - gives the decoder every prefix of each file, and the
+ * file with every bit flipped, one at a time; of a file with more than FLIPS
+ * bits so many, evenly spread (0: all). Promised, and counted:
+ *
+ *   a flipped bit is noticed; a prefix asks for more
+ *   what is shown then is what the good file shows at as many faces, no more
+ *   of it than before the damage, and never less for a longer prefix
+ *
+ * Prints a line per file and the sums; fails if a promise was broken.
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "decoder/pmesh_decode.h"
+#include "decoder/pmesh_scene.h"
+#include "tests/unit/shapes.h"
+
+typedef struct tally {
+    uint64_t bytes, prefixes, shown, flips, noticed, still_shown, wrong;
+    uint64_t first; /* the shortest prefix that shows a mesh */
+} tally;
+
+/* A good file, and a hash of what it shows at each number of faces. */
+typedef struct good {
+    const char *name;
+    uint8_t *data;
+    size_t size;
+    uint64_t *hash; /* 0: never shown */
+    uint32_t faces;
+} good;
+
+static void complain(const good *g, tally *t, const char *what, uint64_t where)
+{
+    if (t->wrong++ < 5)
+        fprintf(stderr, "%s: %s at %" PRIu64 "\n", g->name, what, where);
+}
+
+/* ---- single meshes ------------------------------------------------------ */
+
+/* The faces of what is shown, refined as far as it goes; 0: nothing. */
+static uint32_t show(pmesh_decoder *dec, uint64_t *hash)
+{
+    pmesh_view v;
+    if (pmesh_decoder_refine(dec, NULL, NULL) != PMESH_OK ||
+        pmesh_decoder_mesh(dec, &v) != PMESH_OK || !shape_view_sound(dec))
+        return 0;
+    *hash = shape_view_hash(dec);
+    return v.face_count;
+}
+
+/* Walks down from the full mesh, so that each number is met that can be. */
+static bool look_at_levels(good *g)
+{
+    pmesh_status status;
+    pmesh_decoder *dec = shape_decode(g->data, g->size, g->size, &status);
+    pmesh_view v;
+    bool fine = status == PMESH_OK &&
+                pmesh_decoder_refine(dec, NULL, NULL) == PMESH_OK &&
+                pmesh_decoder_mesh(dec, &v) == PMESH_OK;
+    g->faces = fine ? v.face_count : 0;
+    g->hash = calloc((size_t)g->faces + 1, sizeof *g->hash);
+    for (uint32_t n = g->faces; fine && n > 0; n--) {
+        const pmesh_target target = { .faces = n };
+        pmesh_decoder_refine(dec, &target, NULL);
+        pmesh_decoder_mesh(dec, &v);
+        fine = v.face_count <= g->faces;
+        if (fine && g->hash[v.face_count] == 0)
+            g->hash[v.face_count] = shape_view_hash(dec);
+        n = n > v.face_count ? v.face_count : n;
+    }
+    pmesh_decoder_destroy(dec);
+    return fine;
+}
+
+/* As if the file ended behind `size` bytes. Returns the faces that are shown. */
+static uint32_t try_mesh(const good *g, size_t size, tally *t, uint64_t where,
+                         const char *what)
+{
+    pmesh_status status;
+    uint64_t hash = 0;
+    pmesh_decoder *dec = shape_decode(g->data, size, size, &status);
+    const uint32_t faces = show(dec, &hash);
+    if (status == PMESH_OK)
+        complain(g, t, what, where);
+    if (faces > 0 && (faces > g->faces || g->hash[faces] != hash))
+        complain(g, t, "a mesh that the file does not hold", where);
+    pmesh_decoder_destroy(dec);
+    return faces;
+}
+
+static void cut_everywhere(const good *g, tally *t)
+{
+    uint32_t last = 0;
+    for (size_t size = 0; size < g->size; size++) {
+        const uint32_t faces =
+            try_mesh(g, size, t, size, "a prefix that passes as whole");
+        if (faces < last)
+            complain(g, t, "fewer faces than before", size);
+        if (faces > 0 && last == 0)
+            t->first = size;
+        t->shown += faces > 0;
+        last = faces;
+        t->prefixes++;
+    }
+}
+
+/* ---- scenes ------------------------------------------------------------- */
+
+static pmesh_status feed_scene(const good *g, size_t size)
+{
+    pmesh_scene *scene;
+    uint8_t *copy = malloc(size + !size); /* exact: ASan sees its end */
+    pmesh_status status = pmesh_scene_create(&scene, NULL);
+    if (status == PMESH_OK && copy) {
+        memcpy(copy, g->data, size);
+        status = pmesh_scene_feed(scene, copy, size);
+        pmesh_scene_refine(scene, NULL, NULL);
+        pmesh_scene_destroy(scene);
+    }
+    free(copy);
+    return status;
+}
+
+static uint32_t try_scene(const good *g, size_t size, tally *t, uint64_t where,
+                          const char *what)
+{
+    if (feed_scene(g, size) == PMESH_OK)
+        complain(g, t, what, where);
+    return 0;
+}
+
+/* ---- files -------------------------------------------------------------- */
+
+static bool is_scene(const good *g)
+{
+    return pmesh_scene_probe(g->data, g->size) == PMESH_OK;
+}
+
+static void flip_everywhere(const good *g, tally *t, uint64_t most)
+{
+    const uint64_t bits = 8 * (uint64_t)g->size;
+    const uint64_t step = most > 0 && bits > most ? bits / most + 1 : 1;
+    const bool scene = is_scene(g);
+    for (uint64_t bit = 0; bit < bits; bit += step) {
+        const uint64_t wrong = t->wrong;
+        uint8_t *byte = &g->data[bit / 8];
+        *byte ^= (uint8_t)(1u << bit % 8);
+        const uint32_t faces =
+            (scene ? try_scene : try_mesh)(g, g->size, t, bit,
+                                           "a flipped bit that passes");
+        *byte ^= (uint8_t)(1u << bit % 8);
+        t->still_shown += faces > 0;
+        t->noticed += t->wrong == wrong;
+        t->flips++;
+    }
+}
+
+static void cut_scene(const good *g, tally *t)
+{
+    const size_t step = g->size / 2000 + 1; /* scenes are large */
+    for (size_t size = 0; size < g->size; size += step) {
+        try_scene(g, size, t, size, "a prefix that passes as whole");
+        t->prefixes++;
+    }
+}
+
+static bool read_file(const char *path, good *g)
+{
+    FILE *in = fopen(path, "rb");
+    const size_t room = 1 << 24;
+    *g = (good){ .name = path, .data = malloc(room) };
+    if (!in || !g->data)
+        return false;
+    g->size = fread(g->data, 1, room, in);
+    fclose(in);
+    return g->size > 0 && (is_scene(g) ? feed_scene(g, g->size) == PMESH_OK
+                                       : look_at_levels(g));
+}
+
+static void print(const char *name, const tally *t)
+{
+    printf("%s: %" PRIu64 " bytes; %" PRIu64 " prefixes, %" PRIu64
+           " show a mesh, from byte %" PRIu64 " on; %" PRIu64
+           " bits flipped, %" PRIu64 " noticed, %" PRIu64
+           " still show a coarser mesh; %" PRIu64 " promises broken\n",
+           name, t->bytes, t->prefixes, t->shown, t->first, t->flips,
+           t->noticed, t->still_shown, t->wrong);
+}
+
+static void add(tally *sum, const tally *t)
+{
+    sum->bytes += t->bytes;
+    sum->prefixes += t->prefixes;
+    sum->shown += t->shown;
+    sum->flips += t->flips;
+    sum->noticed += t->noticed;
+    sum->still_shown += t->still_shown;
+    sum->wrong += t->wrong;
+    sum->first = sum->first > t->first ? sum->first : t->first;
+}
+
+int main(int argc, char **argv)
+{
+    tally sum = { 0 };
+    if (argc < 3) {
+        fprintf(stderr, "usage: damage FLIPS FILE...\n");
+        return 2;
+    }
+    for (int i = 2; i < argc; i++) {
+        good g;
+        tally t = { 0 };
+        if (!read_file(argv[i], &g)) {
+            fprintf(stderr, "%s: is no good file\n", argv[i]);
+            return 2;
+        }
+        t.bytes = g.size;
+        if (is_scene(&g))
+            cut_scene(&g, &t);
+        else
+            cut_everywhere(&g, &t);
+        flip_everywhere(&g, &t, strtoull(argv[1], NULL, 10));
+        print(argv[i], &t);
+        add(&sum, &t);
+        free(g.data);
+        free(g.hash);
+    }
+    print("all", &sum);
+    return sum.wrong > 0;
+}
