@@ -4,26 +4,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "encoder/enc_collect.h"
 #include "encoder/enc_parallel.h"
 #include "encoder/enc_wedges.h"
 
-/* What is known of an edge from before the batch, kept at the lower numbered
- * of its half-edges. "Forth" contracts its start into its end. */
-enum {
-    MAY_FORTH = 1,
-    MAY_BACK = 2,
-    UNCLEAN_FORTH = 4,
-    UNCLEAN_BACK = 8,
-    TURNED = 16, /* the second direction has been queued as well */
-    GENERAL = 32, /* a pair for enc_join.h */
-    LATE = 64     /* may spoil faces, when there is little else */
-};
-
 /* Puts a pair parallel to a chosen one before all that are not. */
 #define PARALLEL_FACTOR 0.001
-
-/* But not what costs so many times the median. */
-#define PARALLEL_LIMIT 30.0
 
 /* An entry whose cost has grown by more than this goes back to the queue. */
 #define STALE_FACTOR 1.1
@@ -32,250 +18,11 @@ enum {
  * a batch that is full to this share takes none. */
 #define CLEAN_SHARE 0.5
 
-/* Sheets are joined from where this share of the vertices wants it. */
-#define SHEETS_SHARE 0.5
-
-enum { PROGRESS_INTERVAL = 1 << 16 };
-
 bool enc_run_done(const enc_run *run)
 {
     return run->cancelled || run->starved ||
            run->surface.face_count <= run->face_target ||
            run->surface.vertex_count <= run->vertex_target;
-}
-
-static void report_progress(enc_run *run)
-{
-    const pmesh_encoder_config *config = run->config;
-    const double all = run->mesh->face_count;
-
-    if (run->tick++ % PROGRESS_INTERVAL != 0 || !config->progress)
-        return;
-    const double done =
-        (all - run->surface.face_count) / (all - run->face_target + 1);
-    if (config->progress(config->progress_user, "contract", done) != 0)
-        run->cancelled = true;
-}
-
-/* An id names a half-edge of the pair and which of its ends is the child. */
-static uint32_t entry_id(uint32_t h, bool back)
-{
-    return h << 1 | (uint32_t)back;
-}
-
-static bool may(uint8_t state, bool back)
-{
-    return state & (back ? MAY_BACK : MAY_FORTH);
-}
-
-static bool unclean(uint8_t state, bool back)
-{
-    return state & (back ? UNCLEAN_BACK : UNCLEAN_FORTH);
-}
-
-/* A number h beyond the half-edges stands for a pair without edge. */
-static enc_pair pair_of(const enc_run *run, uint32_t h, bool back)
-{
-    const uint32_t edges = 3 * run->mesh->face_count;
-    enc_pair pair;
-    if (h < edges) {
-        pair = enc_surface_pair(&run->surface, h, back);
-    } else {
-        const uint32_t *end = run->near.pair[h - edges];
-        pair = (enc_pair){ end[back], end[!back], ENC_NONE, ENC_NONE };
-    }
-    if (run->edge_state[h] & GENERAL)
-        pair.left = pair.right = ENC_NONE;
-    return pair;
-}
-
-/* Its estimated quadric goes to *quadric; the largest key: forbidden. */
-static enc_entry make_entry(const enc_run *run, uint32_t h, bool back,
-                            double *quadric)
-{
-    const enc_surface *s = &run->surface;
-    const enc_pair pair = pair_of(run, h, back);
-    const uint32_t last = unclean(run->edge_state[h], back) ? ENC_KEY_LAST : 0;
-    const enc_offer offer = enc_pricing_estimate(&run->pricing, s, &pair);
-
-    *quadric = offer.quadric;
-    if (!(offer.cost < INFINITY))
-        return (enc_entry){ UINT32_MAX, entry_id(h, back) };
-    return (enc_entry){ last | enc_key(offer.cost), entry_id(h, back) };
-}
-
-/* What the edge of h may do; the ring of its start is marked. */
-static uint8_t examine_edge(const enc_surface *s, uint32_t h)
-{
-    if (!enc_surface_can_join(s, h))
-        return 0;
-    const enc_pair forth = enc_surface_pair(s, h, false);
-    const enc_pair back = enc_surface_pair(s, h, true);
-    const bool start_outer = enc_on_boundary(s, forth.child);
-    const bool end_outer = enc_on_boundary(s, forth.parent);
-    unsigned state = 0;
-
-    /* The boundary keeps its vertices unless contracted along itself. */
-    if (!start_outer || end_outer)
-        state |=
-            enc_wedges_clean(s, &forth) ? MAY_FORTH : MAY_FORTH | UNCLEAN_FORTH;
-    if (!end_outer || start_outer)
-        state |=
-            enc_wedges_clean(s, &back) ? MAY_BACK : MAY_BACK | UNCLEAN_BACK;
-    return (uint8_t)state;
-}
-
-static uint8_t examine_general(const enc_surface *s, uint32_t u, uint32_t v)
-{
-    const bool u_outer = enc_on_boundary(s, u), v_outer = enc_on_boundary(s, v);
-    enc_link link;
-    if (!enc_join_link(s, u, v, &link))
-        return 0;
-    return (uint8_t)(
-        GENERAL |
-        ((!u_outer || v_outer) && !link.held[0] ? MAY_FORTH : 0) |
-        ((!v_outer || u_outer) && !link.held[1] ? MAY_BACK : 0));
-}
-
-/* Without it its segment would have less than its share of what is left. */
-static bool has_to_stay(const enc_run *run, uint32_t v)
-{
-    const enc_guide *guide = run->mesh->guide;
-    if (!run->segment_size)
-        return false;
-    return run->segment_size[guide->segment[v]] - 1 <
-           guide->share[guide->segment[v]] * (run->surface.vertex_count - 1);
-}
-
-/* The subset placement has two places to choose from: the direction that leads
- * away from the constraints, if one does. */
-static unsigned steer(const enc_run *run, const enc_pair *forth)
-{
-    double pull[2];
-
-    enc_pricing_ends(&run->pricing, &run->surface, forth, pull);
-    return pull[0] > pull[1] + ENC_CONTENT   ? MAY_FORTH
-           : pull[1] > pull[0] + ENC_CONTENT ? MAY_BACK
-                                             : 0;
-}
-
-/* What the guide leaves of the directions of a pair. */
-static uint8_t guided_state(const enc_run *run, uint32_t h, uint8_t state)
-{
-    const enc_guide *guide = run->mesh->guide;
-
-    if (!guide->lock && !guide->segment && !guide->pull)
-        return state;
-    run->edge_state[h] = state; /* of which pair_of() takes the kind */
-    const enc_pair pair = pair_of(run, h, false);
-    const unsigned allowed =
-        enc_guide_directions(guide, pair.child, pair.parent);
-    unsigned lost = (allowed & ENC_GUIDE_FORTH ? 0 : MAY_FORTH) |
-                    (allowed & ENC_GUIDE_BACK ? 0 : MAY_BACK);
-    if (has_to_stay(run, pair.child)) /* and the parent is of its segment */
-        lost |= MAY_FORTH | MAY_BACK;
-    if (run->pricing.pull && run->pricing.placement == PMESH_SUBSET &&
-        (run->pricing.pulled[pair.child] || run->pricing.pulled[pair.parent]) &&
-        (state & ~lost & (MAY_FORTH | MAY_BACK)) == (MAY_FORTH | MAY_BACK))
-        lost |= steer(run, &pair);
-    return (uint8_t)(state & ~lost);
-}
-
-static void queue_pair(enc_run *run, uint32_t h, uint8_t state)
-{
-    enc_entry best = { UINT32_MAX, 0 };
-    double best_quadric = 0;
-
-    if (run->mesh->guide && state)
-        state = guided_state(run, h, state);
-    run->edge_state[h] = state;
-    for (int back = 0; back < 2; back++) {
-        if (!may(state, back != 0))
-            continue;
-        double quadric;
-        const enc_entry entry = make_entry(run, h, back, &quadric);
-        if (entry.key < best.key) {
-            best = entry;
-            best_quadric = quadric;
-        }
-    }
-    if (best.key < UINT32_MAX) {
-        enc_queue_add(&run->queue, best);
-        enc_quantile_add(&run->quadrics, best_quadric);
-    }
-}
-
-/* Of a joined mesh, what the rules for manifolds forbid may still do. */
-static void queue_edge(enc_run *run, uint32_t h)
-{
-    const enc_surface *s = &run->surface;
-    const bool general = s->fan && enc_join_is_general(s, h);
-    uint8_t state = general ? 0 : examine_edge(s, h);
-    if (s->fan && state == 0 && enc_join_is_lowest(s, h))
-        state = examine_general(s, s->vertex[h], s->vertex[enc_next(h)]);
-    queue_pair(run, h, state);
-}
-
-/* Where a vertex of the mesh is now. */
-static uint32_t survivor(const enc_run *run, uint32_t v)
-{
-    const enc_schedule *out = run->out;
-    while (out->vertex_end[v] != ENC_NONE)
-        v = out->contraction[out->vertex_end[v]].parent;
-    return v;
-}
-
-/* True if v and w have an edge. */
-static bool are_linked(enc_surface *s, uint32_t v, uint32_t w)
-{
-    enc_surface_mark_ring(s, v);
-    return s->mark[w] == s->stamp;
-}
-
-/* Those by distance are followed to where they went; those between sheets are
- * made anew, if it is time for them. */
-static void queue_near(enc_run *run)
-{
-    enc_surface *s = &run->surface;
-    enc_near *near = &run->near;
-    near->count = run->within;
-    for (uint32_t i = 0; i < run->within; i++)
-        for (int k = 0; k < 2; k++)
-            near->pair[i][k] = survivor(run, near->pair[i][k]);
-    run->starved = enc_near_sheets(s, near) != PMESH_OK;
-    if (near->count - run->within > SHEETS_SHARE * s->vertex_count)
-        run->joins_sheets = true;
-    if (!run->joins_sheets)
-        near->count = run->within;
-    for (uint32_t i = 0; i < near->count; i++) {
-        const uint32_t v = near->pair[i][0], w = near->pair[i][1];
-        if (v != w && !are_linked(s, v, w))
-            queue_pair(run, 3 * run->mesh->face_count + i,
-                       examine_general(s, v, w));
-    }
-}
-
-static void collect(enc_run *run, const enc_batch_plan *plan)
-{
-    enc_surface *s = &run->surface;
-
-    enc_queue_clear(&run->queue);
-    enc_quantile_clear(&run->quadrics);
-    for (uint32_t v = 0; v < run->mesh->vertex_count; v++) {
-        uint32_t start = s->first[v];
-        if (start == ENC_NONE)
-            continue;
-        enc_surface_mark_ring(s, v);
-        for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
-            if (h < s->twin[h]) /* ENC_NONE is the largest */
-                queue_edge(run, h);
-        report_progress(run);
-    }
-    if (s->fan)
-        queue_near(run);
-    enc_queue_sort(&run->queue);
-    run->parallel_limit = PARALLEL_LIMIT * enc_queue_median(&run->queue);
-    run->guard = enc_quantile_at(&run->quadrics, plan->guard);
 }
 
 static bool is_free(const enc_run *run, uint32_t v)
@@ -378,8 +125,8 @@ static unsigned find_parallel(const enc_run *run, const enc_pair *pair,
         }
         const double price =
             offer.cost + turn * run->pricing.edge_square * off;
-        out[count++] =
-            (enc_entry){ enc_key(PARALLEL_FACTOR * price), entry_id(h, back) };
+        out[count++] = (enc_entry){ enc_key(PARALLEL_FACTOR * price),
+                                    enc_entry_id(h, back) };
     }
     return count;
 }
@@ -412,7 +159,8 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
     end_face(out, pair->right, index);
     for (uint32_t i = 0; link && i < link->count; i++)
         end_face(out, link->edge[i], index);
-    run->drift[pair->parent] = (float)error;
+    if (run->drift)
+        run->drift[pair->parent] = (float)error;
     if (run->segment_size)
         run->segment_size[run->mesh->guide->segment[pair->child]]--;
     run->taken[pair->child] = run->taken[pair->parent] =
@@ -436,11 +184,10 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
 static double total_error(const enc_run *run, const enc_pair *pair,
                           const enc_offer *offer)
 {
+    if (!run->drift)
+        return 0;
     const double child = (double)run->drift[pair->child];
     const double parent = (double)run->drift[pair->parent];
-
-    if (!(run->error_limit < INFINITY))
-        return 0;
     return enc_reach_of_pair(&run->surface, pair, offer->place) +
            (child > parent ? child : parent);
 }
@@ -448,7 +195,7 @@ static double total_error(const enc_run *run, const enc_pair *pair,
 static void queue_again(enc_run *run, uint32_t h, bool back)
 {
     double quadric;
-    const enc_entry entry = make_entry(run, h, back, &quadric);
+    const enc_entry entry = enc_run_entry(run, h, back, &quadric);
     if (entry.key < UINT32_MAX)
         enc_queue_push(&run->queue, entry);
 }
@@ -543,9 +290,9 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
 
     if (h < 3 * run->mesh->face_count && s->vertex[h] == ENC_NONE)
         return false;
-    const enc_pair pair = pair_of(run, h, back);
+    const enc_pair pair = enc_run_pair(run, h, back);
     if (!is_free(run, pair.child) || !is_free(run, pair.parent) ||
-        has_to_stay(run, pair.child))
+        enc_run_has_to_stay(run, pair.child))
         return false;
     if (general)
         return try_general(run, plan, entry, &pair);
@@ -569,21 +316,88 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
     return true;
 }
 
-uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
+#if defined(__GNUC__)
+#define FETCH(address) __builtin_prefetch(address)
+#else
+#define FETCH(address) ((void)(address))
+#endif
+
+/* How many entries ahead the memory of their edges, ends and rings is asked
+ * for. Costs visit a large mesh in any order: half the time was waiting. */
+enum { EDGE_AHEAD = 32, ENDS_AHEAD = 20, RING_AHEAD = 8 };
+
+static bool is_edge(const enc_run *run, uint32_t ahead, uint32_t *h)
+{
+    const enc_queue *q = &run->queue;
+
+    if (q->list_count - q->list_next <= ahead)
+        return false;
+    *h = q->list[q->list_next + ahead].id >> 1;
+    return *h < 3 * run->mesh->face_count;
+}
+
+static void fetch_ahead(const enc_run *run)
+{
+    const enc_surface *s = &run->surface;
+    uint32_t h;
+
+    if (is_edge(run, EDGE_AHEAD, &h)) {
+        FETCH(&run->edge_state[h]);
+        FETCH(&s->vertex[h]);
+        FETCH(&s->twin[h]);
+    }
+    if (is_edge(run, ENDS_AHEAD, &h) && s->vertex[h] != ENC_NONE) {
+        const uint32_t end[2] = { s->vertex[h], s->vertex[enc_next(h)] };
+        for (int k = 0; k < 2; k++) {
+            FETCH(&run->taken[end[k]]);
+            FETCH(&s->first[end[k]]);
+            FETCH(&s->position[end[k]]);
+        }
+    }
+    if (is_edge(run, RING_AHEAD, &h) && s->vertex[h] != ENC_NONE) {
+        const uint32_t end[2] = { s->vertex[h], s->vertex[enc_next(h)] };
+        for (int k = 0; k < 2; k++) {
+            const uint32_t first = s->first[end[k]];
+            if (!is_free(run, end[0]) || !is_free(run, end[1]) ||
+                first == ENC_NONE)
+                continue;
+            FETCH(&s->vertex[first]);
+            FETCH(&s->twin[first]);
+            FETCH(&s->degree[end[k]]);
+            FETCH(&run->pricing.unevenness[end[k]]);
+        }
+    }
+}
+
+static uint32_t contract_pairs(enc_run *run, const enc_batch_plan *plan)
 {
     uint32_t accepted = 0;
     enc_entry entry;
 
-    run->too_far = false;
-    enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
-                      run->out->contraction_count == 0);
-    collect(run, plan);
     while (accepted < plan->limit && !enc_run_done(run) &&
            enc_queue_pop(&run->queue, &entry)) {
+        fetch_ahead(run);
         if ((entry.key & ENC_KEY_LAST) && accepted >= CLEAN_SHARE * plan->limit)
             break;
         accepted += try_entry(run, plan, entry);
-        report_progress(run);
+        enc_run_progress(run, 1);
     }
+    return accepted;
+}
+
+uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
+{
+    run->too_far = false;
+    enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
+                      run->out->contraction_count == 0);
+    enc_collect(run, plan->guard);
+    if (!run->bound_is_due)
+        return contract_pairs(run, plan);
+    /* Others find out how far the last batch went while this one is made. */
+    enc_reach_begin(&run->reach, &run->surface, run->out);
+    const uint32_t accepted = contract_pairs(run, plan);
+    run->out->batch_error[run->out->batch_count - 1] =
+        enc_reach_end(&run->reach);
+    run->bound_is_due = false;
     return accepted;
 }

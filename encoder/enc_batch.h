@@ -44,6 +44,12 @@ typedef struct enc_role {
     uint8_t general_wing; /* of such a pair */
 } enc_role;
 
+/* What another worker than the calling thread writes to. */
+typedef struct enc_scratch {
+    uint32_t *mark; /* per vertex: see enc_surface */
+    uint32_t *fate; /* per wedge: see enc_looks; NULL if that is */
+} enc_scratch;
+
 /* A contraction run; batches leave their mark in `out`. */
 typedef struct enc_run {
     const enc_mesh *mesh;
@@ -66,11 +72,12 @@ typedef struct enc_run {
     uint8_t *taken;      /* per vertex: batch_count when last in a pair, + 1 */
     enc_role *role;      /* per vertex; NULL unless joined */
     float *drift;        /* per vertex: how far pairs have led from the
-                            original there, if there is a limit */
+                            original there; NULL unless there is a limit */
     uint32_t face_target, vertex_target;
     uint32_t *segment_size; /* per segment of the guide: its vertices; NULL
                                unless segments have shares */
     enc_reach reach;
+    bool bound_is_due;     /* of the last batch: see enc_reach_begin() */
     double error_limit;    /* of a level, in steps */
     bool undone;           /* a batch exceeded it */
     bool too_far;          /* the batch left out a pair because of it */
@@ -78,6 +85,8 @@ typedef struct enc_run {
     uint32_t tick;         /* candidates seen, for progress */
     bool cancelled;
     bool starved; /* out of memory */
+    enc_scratch *scratch;  /* per worker but the first; NULL: there is none */
+    struct enc_run *views; /* likewise: see enc_collect.c */
 } enc_run;
 
 /* True once the base mesh is reached, the caller has cancelled, or there is no

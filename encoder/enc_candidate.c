@@ -62,7 +62,9 @@ pmesh_status enc_pricing_create(const enc_mesh *mesh,
             pmesh_alloc_zero(a, mesh->vertex_count, sizeof *out->moved);
     out->unevenness =
         pmesh_alloc(a, mesh->vertex_count, sizeof *out->unevenness);
-    if (!out->planes || !out->unevenness || !copy_guide(mesh, out) ||
+    out->block = pmesh_alloc(a, enc_blocks(mesh), sizeof *out->block);
+    if (!out->planes || !out->unevenness || !out->block ||
+        !copy_guide(mesh, out) ||
         (config->metric == PMESH_ACCUMULATED && !out->moved)) {
         enc_pricing_destroy(mesh, out);
         return PMESH_E_MEMORY;
@@ -77,6 +79,7 @@ void enc_pricing_destroy(const enc_mesh *mesh, enc_pricing *p)
     pmesh_release(a, p->planes, mesh->vertex_count, sizeof *p->planes);
     pmesh_release(a, p->moved, mesh->vertex_count, sizeof *p->moved);
     pmesh_release(a, p->unevenness, mesh->vertex_count, sizeof *p->unevenness);
+    pmesh_release(a, p->block, enc_blocks(mesh), sizeof *p->block);
     pmesh_release(a, p->factor, mesh->vertex_count, sizeof *p->factor);
     pmesh_release(a, p->pull, mesh->vertex_count, sizeof *p->pull);
     pmesh_release(a, p->pulled, mesh->vertex_count, sizeof *p->pulled);
@@ -123,23 +126,59 @@ static inline enc_quadric recall(const enc_pricing *p, uint32_t v)
     return q;
 }
 
+typedef struct beginning {
+    enc_pricing *pricing;
+    const enc_surface *surface;
+    bool planes; /* are to be made */
+} beginning;
+
+/* Edges count where their lower half-edge starts. */
+static void survey_block(enc_pricing *p, const enc_surface *s, uint32_t part)
+{
+    const uint32_t end = enc_block_end(s->mesh, part);
+    enc_block sums = { .length = 0 };
+
+    for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
+        uint32_t start = s->first[v];
+        double length;
+        if (start == ENC_NONE)
+            continue;
+        for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
+            sums.edges += h < s->twin[h];
+        p->unevenness[v] = (float)enc_star_unevenness(s, v, &length);
+        sums.length += length;
+    }
+    p->block[part] = sums;
+}
+
+/* Planes are one part: their sums go from face to face. */
+static void begin_part(void *user, uint32_t part, unsigned worker)
+{
+    const beginning *b = user;
+    const uint32_t blocks = enc_blocks(b->surface->mesh);
+
+    (void)worker;
+    if (part == 0 && b->planes)
+        enc_star_all_planes(b->surface, b->pricing->planes);
+    else if (part > 0 && part <= blocks)
+        survey_block(b->pricing, b->surface, part - 1);
+    else if (part > blocks)
+        enc_looks_begin(&b->pricing->looks, b->surface, part - blocks - 1);
+}
+
 void enc_pricing_begin(enc_pricing *p, const enc_surface *s, enc_taste taste,
                        bool first_time)
 {
+    beginning b = { p, s, first_time || p->metric == PMESH_MEMORYLESS };
+    const uint32_t blocks = enc_blocks(s->mesh);
     double sum = 0;
 
     p->taste = taste;
-    enc_looks_begin(&p->looks, s);
-    if (first_time || p->metric == PMESH_MEMORYLESS)
-        enc_star_all_planes(s, p->planes);
-    for (uint32_t v = 0; v < s->mesh->vertex_count; v++) {
-        double length;
-
-        if (s->first[v] == ENC_NONE)
-            continue;
-        p->unevenness[v] = (float)enc_star_unevenness(s, v, &length);
-        sum += length;
-    }
+    enc_pool_run(enc_surface_pool(s),
+                 1 + blocks + enc_looks_parts(&p->looks, s->mesh), begin_part,
+                 &b);
+    for (uint32_t i = 0; i < blocks; i++)
+        sum += p->block[i].length;
     p->edge_square = sum / (3.0 * s->face_count);
 }
 
@@ -251,10 +290,17 @@ static double mean_factor(const enc_pricing *p, const enc_pair *pair)
     return 0.5 * (factor_of(p, pair->child) + factor_of(p, pair->parent));
 }
 
-/* Of a pair whose parent goes to `middle` + x. */
-static double cost_of(const enc_pricing *p, const enc_surface *s,
-                      const enc_pair *pair, const double middle[3],
-                      const double x[3], const enc_offer *offer)
+static double plain_cost(const enc_pricing *p, const enc_pair *pair,
+                         double edge_square, double quadric)
+{
+    return p->taste.quadric * quadric +
+           mean_factor(p, pair) * regularity(p, pair, edge_square);
+}
+
+/* By another rule than quadrics; the parent goes to `middle` + x. */
+static double cost_by_rule(const enc_pricing *p, const enc_surface *s,
+                           const enc_pair *pair, const double middle[3],
+                           const double x[3], const enc_offer *offer)
 {
     const uint32_t ends[2] = { pair->parent, pair->child };
     const uint32_t *source = s->mesh->source;
@@ -274,13 +320,21 @@ static double cost_of(const enc_pricing *p, const enc_surface *s,
         told.half[i] = at[1][i] - middle[i];
         told.place[i] = middle[i] + x[i];
     }
-    if (p->rule.cost == PMESH_COST_LENGTH || p->rule.cost == PMESH_COST_CAMERA)
-        return mean_factor(p, pair) * enc_cost(&p->rule, &told);
-    if (p->rule.cost != PMESH_COST_QUADRIC)
-        return enc_cost(&p->rule, &told);
-    return p->taste.quadric * offer->quadric +
-           mean_factor(p, pair) *
-               regularity(p, pair, 4 * dot(told.half, told.half));
+    const double cost = enc_cost(&p->rule, &told);
+    const bool shape_apart = p->rule.cost == PMESH_COST_LENGTH ||
+                             p->rule.cost == PMESH_COST_CAMERA;
+    return shape_apart ? mean_factor(p, pair) * cost : cost;
+}
+
+/* `half` points from the middle to the child. */
+static double cost_of(const enc_pricing *p, const enc_surface *s,
+                      const enc_pair *pair, const double middle[3],
+                      const double half[3], const double x[3],
+                      const enc_offer *offer)
+{
+    return p->rule.cost == PMESH_COST_QUADRIC
+               ? plain_cost(p, pair, 4 * dot(half, half), offer->quadric)
+               : cost_by_rule(p, s, pair, middle, x, offer);
 }
 
 /* Both ends' quadrics about the midpoint: without attributes and factors, and
@@ -306,9 +360,29 @@ static void sum_both(const enc_pricing *p, const enc_surface *s,
     sum_about_midpoint(&ends[0], &ends[1], half, sum);
 }
 
+/* A parent that stays, by quadrics alone: what most pairs are. */
+static enc_offer estimate_plain(const enc_pricing *p, const enc_surface *s,
+                                const enc_pair *pair)
+{
+    const enc_quadric child = recall(p, pair->child);
+    const double rest = p->moved ? p->moved[pair->parent].c : 0;
+    double back[3];
+    enc_offer offer = { .cost = 0 };
+
+    difference(s->position[pair->parent], s->position[pair->child], back);
+    offer.quadric = factor_of(p, pair->child) *
+                        enc_quadric_value(&child, back) +
+                    factor_of(p, pair->parent) * rest;
+    offer.cost = plain_cost(p, pair, dot(back, back), offer.quadric);
+    return offer;
+}
+
 enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
                                const enc_pair *pair)
 {
+    if (p->placement == PMESH_SUBSET && p->looks.count == 0 &&
+        p->rule.cost == PMESH_COST_QUADRIC)
+        return estimate_plain(p, s, pair);
     enc_quadric ends[2] = { recall(p, pair->child), recall(p, pair->parent) };
     const double weight = ends[0].weight + ends[1].weight;
     double edge[3], half[3], middle[3], x[3];
@@ -338,7 +412,7 @@ enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
     }
     enc_looks_forget(&p->looks, s, pair);
     offer.distance = weight > 0 ? offer.distance / weight : 0;
-    offer.cost = cost_of(p, s, pair, middle, x, &offer);
+    offer.cost = cost_of(p, s, pair, middle, half, x, &offer);
     return offer;
 }
 
@@ -428,7 +502,7 @@ enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
     offer.quadric = enc_quadric_value(&sum, x);
     if (shape.weight > 0)
         offer.distance = enc_quadric_value(&shape, x) / shape.weight;
-    offer.cost = cost_of(p, s, pair, middle, x, &offer);
+    offer.cost = cost_of(p, s, pair, middle, half, x, &offer);
     return offer;
 }
 

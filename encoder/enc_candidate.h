@@ -34,6 +34,13 @@ typedef struct enc_moved {
     double c;
 } enc_moved;
 
+/* Of ENC_BLOCK vertices, at the start of the batch. */
+typedef struct enc_block {
+    double length;         /* sum of the squared edges that leave them */
+    uint32_t edges;        /* whose lower half-edge leaves them */
+    uint32_t entry, count; /* of them in the queue's list: enc_collect.c */
+} enc_block;
+
 typedef struct enc_pricing {
     pmesh_metric metric;
     pmesh_placement placement;
@@ -44,6 +51,7 @@ typedef struct enc_pricing {
     enc_planes *planes; /* per vertex: its quadric, about its position ... */
     enc_moved *moved;   /* ... NULL with PMESH_MEMORYLESS */
     float *unevenness;  /* per vertex: |v - mean of its ring|^2 */
+    enc_block *block;   /* per enc_blocks() */
     float *factor;      /* per vertex, as in enc_guide; or NULL */
     enc_quadric *pull;  /* likewise, about its position */
     uint8_t *pulled;    /* whether there is any */

@@ -20,7 +20,9 @@
 
 enum {
     SPENT_BYTE = 8 * 256, /* of pmesh_codec.attribute_spent */
-    BLOCK_ROOM = 1 << 22,  /* far beyond what a block of 64 KiB can need */
+    BLOCK_ROOM = 1 << 22,  /* far beyond what a block of 64 KiB can need; */
+    SPLIT_ROOM = 8, /* without attributes, so is this many times the bits as
+                       they are */
     BASE_FACE_ROOM = 96,   /* bytes: a face is a few flags and, at most, one */
     BASE_WEDGE_ROOM = 160, /* vertex of 3 x 24 bits; 32 values of 16 bits */
     /* Small blocks show progress sooner, but cost 0.1 % of the file, and what
@@ -43,6 +45,7 @@ pmesh_encoder_config pmesh_encoder_config_default(void)
         .normal_weight = 0.01,
         .texcoord_weight = 0.1,
         .color_weight = 0.03,
+        .threads = 1,
     };
 }
 
@@ -149,12 +152,34 @@ static pmesh_status finish_level(job *j, uint32_t level)
 
 /* ---- chunks ------------------------------------------------------------ */
 
-static bool make_room(job *j)
+static double raw_split_bits(const job *j)
 {
+    double bits = 3.0 * j->mesh->grid.bits * (j->replay.moves ? 2 : 1) + 20;
+    for (uint32_t i = 0; i < j->mesh->attribute_count; i++)
+        bits += 2.0 * PMESH_MAX_COMPONENTS * j->mesh->attribute[i].bits;
+    return bits;
+}
+
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+static bool make_room(job *j, const pmesh_mesh_input *in)
+{
+    const size_t wedges =
+        j->mesh->value_count ? 3 * (size_t)j->replay.base_faces : 0;
     const size_t base = BASE_FACE_ROOM * (size_t)j->replay.base_faces +
-                        BASE_WEDGE_ROOM * 3 * (size_t)j->replay.base_faces *
-                            (j->mesh->value_count > 0);
-    j->room_size = base > BLOCK_ROOM ? base : BLOCK_ROOM;
+                        BASE_WEDGE_ROOM * wedges;
+    const double splits = SPLIT_ROOM * raw_split_bits(j) / 8 *
+                          j->schedule.contraction_count;
+    const bool plain = j->mesh->value_count == 0 && !j->mesh->joined;
+    const size_t block = plain && splits < BLOCK_ROOM
+                             ? 2 * PMESH_BLOCK_CHUNK_SIZE + (size_t)splits
+                             : BLOCK_ROOM;
+    j->room_size = larger(base, block);
+    if (in->material_names)
+        j->room_size = larger(j->room_size, PMESH_MAX_NAMES_SIZE);
     j->room = pmesh_alloc(&j->config.allocator, j->room_size, 1);
     return j->room != NULL;
 }
@@ -261,14 +286,6 @@ static uint32_t splits_of_block(const job *j, double bits)
     return j->replay.splits_left < limit ? j->replay.splits_left : limit;
 }
 
-static double raw_split_bits(const job *j)
-{
-    double bits = 3.0 * j->mesh->grid.bits * (j->replay.moves ? 2 : 1) + 20;
-    for (uint32_t i = 0; i < j->mesh->attribute_count; i++)
-        bits += 2.0 * PMESH_MAX_COMPONENTS * j->mesh->attribute[i].bits;
-    return bits;
-}
-
 static pmesh_status write_levels(job *j)
 {
     const enc_schedule *s = &j->schedule;
@@ -373,7 +390,7 @@ static pmesh_status code(job *j, const pmesh_mesh_input *in)
         status = enc_measure_create(j->mesh, &j->measure);
     if (status != PMESH_OK)
         return status;
-    if (!make_room(j))
+    if (!make_room(j, in))
         return PMESH_E_MEMORY;
     j->header.measured = j->config.measure;
     fill_errors(j);
@@ -408,20 +425,25 @@ static job *draft(const enc_mesh *mesh, const pmesh_mesh_input *in,
                   const pmesh_encoder_config *config, uint32_t variant,
                   pmesh_encode_report *report, pmesh_status *status)
 {
-    job *j = pmesh_alloc_zero(&config->allocator, 1, sizeof *j);
-    *status = PMESH_E_MEMORY;
-    if (!j)
+    enc_schedule schedule;
+    const double start = report->clock ? report->clock() : 0;
+    *status = enc_schedule_build(mesh, config, variant, &schedule);
+    const double contracted = report->clock ? report->clock() : 0;
+    report->seconds_contract += contracted - start;
+    if (*status != PMESH_OK)
         return NULL;
+    job *j = pmesh_alloc_zero(&config->allocator, 1, sizeof *j);
+    if (!j) {
+        enc_schedule_destroy(&schedule);
+        *status = PMESH_E_MEMORY;
+        return NULL;
+    }
     j->config = *config;
     j->report = report;
     j->mesh = mesh;
+    j->schedule = schedule;
     enc_stream_init(&j->stream, config->allocator);
-    const double start = now(j);
-    *status = enc_schedule_build(mesh, config, variant, &j->schedule);
-    const double contracted = now(j);
-    if (*status == PMESH_OK)
-        *status = code(j, in);
-    report->seconds_contract += contracted - start;
+    *status = code(j, in);
     report->seconds_code += now(j) - contracted;
     if (*status == PMESH_OK) {
         fill_header(j);
@@ -431,33 +453,102 @@ static job *draft(const enc_mesh *mesh, const pmesh_mesh_input *in,
     return NULL;
 }
 
-/* Of all variants the one that becomes smallest; NULL if one fails. */
+/* The second variant, in a thread of its own: without hooks of the caller. */
+typedef struct rival {
+    const enc_mesh *mesh;
+    const pmesh_mesh_input *in;
+    pmesh_encoder_config config;
+    pmesh_encode_report report;
+    pmesh_status status;
+    job *made;
+} rival;
+
+static void draft_rival(void *user, uint32_t part, unsigned worker)
+{
+    rival *r = user;
+    (void)part;
+    (void)worker;
+    r->made = draft(r->mesh, r->in, &r->config, 1, &r->report, &r->status);
+}
+
+/* There are two at most. They go into one thread each if there are two threads
+ * and the allocator can bear it: see wants_rivals(). */
+static void draft_all(rival *second, enc_pool *pool, job **first,
+                      const pmesh_encoder_config *config,
+                      pmesh_encode_report *report, pmesh_status *status)
+{
+    const bool two = enc_schedule_variants(config) > 1;
+    if (two && pool)
+        enc_pool_begin(pool, 1, draft_rival, second);
+    *first = draft(second->mesh, second->in, config, 0, report, status);
+    if (two && pool)
+        enc_pool_end(pool);
+    else if (two && *first)
+        draft_rival(second, 0, 0);
+}
+
+/* Of all variants the one that becomes smallest; NULL if one fails. pool: for
+ * the variants. */
 static job *draft_best(const enc_mesh *mesh, const pmesh_mesh_input *in,
-                       const pmesh_encoder_config *config,
+                       const pmesh_encoder_config *config, enc_pool *pool,
                        pmesh_encode_report *report, pmesh_status *status)
 {
-    job *best = draft(mesh, in, config, 0, report, status);
-    for (uint32_t i = 1; best && i < enc_schedule_variants(config); i++) {
-        job *other = draft(mesh, in, config, i, report, status);
-        const bool better = !other || other->stream.size < best->stream.size;
-        job_destroy(better ? best : other);
-        best = better ? other : best;
+    rival *other =
+        pmesh_alloc_zero(&config->allocator, 1, sizeof *other);
+    job *best = NULL;
+    *status = PMESH_E_MEMORY;
+    if (!other)
+        return NULL;
+    *other = (rival){ .mesh = mesh, .in = in, .config = *config };
+    if (pool)
+        other->config.progress = NULL;
+    else
+        other->report.clock = report->clock;
+    draft_all(other, pool, &best, config, report, status);
+    if (best && other->status != PMESH_OK)
+        *status = other->status;
+    report->seconds_contract += other->report.seconds_contract;
+    report->seconds_code += other->report.seconds_code;
+    if (other->made && best && other->made->stream.size < best->stream.size) {
+        job *const worse = best;
+        best = other->made;
+        best->report = report;
+        report->base_components = other->report.base_components;
+        other->made = worse;
     }
-    return best;
+    job_destroy(other->made);
+    pmesh_release(&config->allocator, other, 1, sizeof *other);
+    if (*status == PMESH_OK)
+        return best;
+    job_destroy(best);
+    return NULL;
+}
+
+/* Each variant in a thread is better than the threads for each variant. Draco's
+ * hooks are the caller's, and stay in its thread. */
+static bool wants_rivals(const pmesh_encoder_config *config,
+                         const enc_pool *pool)
+{
+    return pool && enc_schedule_variants(config) > 1 &&
+           config->base_coder == PMESH_BASE_NATIVE;
 }
 
 static pmesh_status run(const pmesh_mesh_input *in,
-                        const pmesh_encoder_config *config, pmesh_write write,
-                        void *user, pmesh_encode_report *report)
+                        const pmesh_encoder_config *config, enc_pool *pool,
+                        pmesh_write write, void *user,
+                        pmesh_encode_report *report)
 {
     enc_mesh mesh;
     const double start = report->clock ? report->clock() : 0;
     pmesh_status status = enc_mesh_import(in, config, &mesh, report);
     if (status != PMESH_OK)
         return status;
+    const bool rivals = wants_rivals(config, pool);
+    mesh.pool = rivals ? NULL : pool;
     report->seconds_import = (report->clock ? report->clock() : 0) - start;
 
-    job *j = draft_best(&mesh, in, config, report, &status);
+    job *j = draft_best(&mesh, in, config, rivals ? pool : NULL, report,
+                        &status);
     if (j) {
         uint64_t header_size, file_size;
         status = enc_stream_write(&j->stream, &j->header, write, user,
@@ -484,5 +575,14 @@ pmesh_status pmesh_encode(const pmesh_mesh_input *mesh,
 
     pmesh_encoder_config resolved = *config;
     resolved.allocator = pmesh_allocator_resolve(config->allocator);
-    return run(mesh, &resolved, write, user, report);
+    /* Hooks of the caller run in the caller's thread. */
+    const uint32_t threads =
+        config->cost == PMESH_COST_CUSTOM ? 1 : config->threads;
+    enc_pool *pool = enc_pool_create(&resolved.allocator, threads);
+    if (wants_rivals(config, pool))
+        resolved.allocator = enc_pool_allocator(pool);
+    const pmesh_status status =
+        run(mesh, &resolved, pool, write, user, report);
+    enc_pool_destroy(pool);
+    return status;
 }

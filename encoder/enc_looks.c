@@ -58,6 +58,18 @@ static void plan_channels(enc_looks *looks, const enc_mesh *mesh)
     }
 }
 
+bool enc_looks_fate(const enc_looks *looks, const enc_mesh *mesh,
+                    uint32_t **fate)
+{
+    *fate = NULL;
+    if (looks->count == 0)
+        return true;
+    *fate = pmesh_alloc(&mesh->allocator, mesh->wedge_count, sizeof **fate);
+    if (*fate)
+        memset(*fate, 0xff, mesh->wedge_count * sizeof **fate);
+    return *fate != NULL;
+}
+
 pmesh_status enc_looks_create(const enc_mesh *mesh, enc_looks *out)
 {
     const pmesh_allocator *a = &mesh->allocator;
@@ -70,12 +82,11 @@ pmesh_status enc_looks_create(const enc_mesh *mesh, enc_looks *out)
                              sizeof *out->value);
     out->frame = pmesh_alloc(a, mesh->face_count * stride_of(out),
                              sizeof *out->frame);
-    out->fate = pmesh_alloc(a, mesh->wedge_count, sizeof *out->fate);
-    if (!out->value || !out->frame || !out->fate) {
+    if (!out->value || !out->frame ||
+        !enc_looks_fate(out, mesh, &out->fate)) {
         enc_looks_destroy(mesh, out);
         return PMESH_E_MEMORY;
     }
-    memset(out->fate, 0xff, mesh->wedge_count * sizeof *out->fate);
     load_values(out, mesh);
     return PMESH_OK;
 }
@@ -133,11 +144,16 @@ static void make_frame(const enc_looks *looks, const enc_surface *s,
     normal[3] = 0.5 * length;
 }
 
-void enc_looks_begin(enc_looks *looks, const enc_surface *s)
+uint32_t enc_looks_parts(const enc_looks *looks, const enc_mesh *mesh)
 {
-    if (looks->count == 0)
-        return;
-    for (uint32_t f = 0; f < s->mesh->face_count; f++)
+    return looks->count ? (mesh->face_count + ENC_BLOCK - 1) / ENC_BLOCK : 0;
+}
+
+void enc_looks_begin(enc_looks *looks, const enc_surface *s, uint32_t part)
+{
+    const uint32_t count = s->mesh->face_count, first = part * ENC_BLOCK;
+
+    for (uint32_t f = first; f < first + ENC_BLOCK && f < count; f++)
         if (s->vertex[3 * f] != ENC_NONE)
             make_frame(looks, s, f, looks->frame + f * stride_of(looks));
 }

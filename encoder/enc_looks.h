@@ -38,8 +38,14 @@ typedef struct enc_looks {
 pmesh_status enc_looks_create(const enc_mesh *mesh, enc_looks *out);
 void enc_looks_destroy(const enc_mesh *mesh, enc_looks *looks);
 
-/* Takes the faces as they are now. */
-void enc_looks_begin(enc_looks *looks, const enc_surface *s);
+/* Another `fate` for a thread of its own: mesh->wedge_count long, or NULL if
+ * attributes have no say. False if memory is out. */
+bool enc_looks_fate(const enc_looks *looks, const enc_mesh *mesh,
+                    uint32_t **fate);
+
+/* Takes the faces as they are now, part by part: in any order. */
+uint32_t enc_looks_parts(const enc_looks *looks, const enc_mesh *mesh);
+void enc_looks_begin(enc_looks *looks, const enc_surface *s, uint32_t part);
 
 /* Finds out where the wedges of the pair's child will go: to be forgotten
  * before others are asked for. */

@@ -11,6 +11,8 @@
 
 typedef struct enc_measure {
     enc_nearest full; /* empty: nothing is to be measured */
+    double (*sample)[3];
+    enc_pool *pool;
 } enc_measure;
 
 pmesh_status enc_measure_create(const enc_mesh *mesh, enc_measure *out);

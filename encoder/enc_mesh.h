@@ -27,6 +27,7 @@
 
 #include <stdbool.h>
 
+#include "encoder/enc_pool.h"
 #include "encoder/pmesh_encode.h"
 
 #define ENC_NONE UINT32_MAX
@@ -63,6 +64,7 @@ typedef struct enc_mesh {
     float weight[PMESH_MAX_ATTRIBUTES]; /* in costs; see enc_looks.h */
 
     enc_guide *guide; /* enc_guide.h; NULL: nobody asked for anything */
+    enc_pool *pool;   /* borrowed: who helps; NULL: nobody */
 } enc_mesh;
 
 /*

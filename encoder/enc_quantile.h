@@ -33,6 +33,13 @@ static inline void enc_quantile_add(enc_quantile *q, double value)
     q->count++;
 }
 
+static inline void enc_quantile_merge(enc_quantile *q, const enc_quantile *more)
+{
+    for (int i = 0; i < ENC_QUANTILE_BINS; i++)
+        q->bin[i] += more->bin[i];
+    q->count += more->count;
+}
+
 /* The upper end of the bin in which `share` of all values is reached; infinite
  * for share >= 1. */
 static inline double enc_quantile_at(const enc_quantile *q, double share)

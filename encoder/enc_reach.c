@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "encoder/enc_reach.h"
 
+#include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "encoder/enc_distance.h"
 #include "format/alloc.h"
@@ -9,13 +11,72 @@
 /* One of so many vertices goes first, so that the others soon have enough. */
 enum { PIONEERS = 61 };
 
-pmesh_status enc_reach_create(const enc_mesh *mesh, enc_reach *out)
+/* ---- the surface that is searched ---- */
+
+/* A copy of what a search looks at: the surface goes on meanwhile. */
+static bool create_copy(const enc_mesh *mesh, enc_surface *copy)
 {
-    *out = (enc_reach){ .mesh = mesh };
-    out->beside = pmesh_alloc(&mesh->allocator, mesh->vertex_count,
-                              sizeof *out->beside);
-    if (!out->beside)
+    const pmesh_allocator *a = &mesh->allocator;
+    const size_t n = mesh->vertex_count, corners = 3 * (size_t)mesh->face_count;
+
+    *copy = (enc_surface){ .mesh = mesh };
+    copy->vertex = pmesh_alloc(a, corners, sizeof *copy->vertex);
+    copy->twin = pmesh_alloc(a, corners, sizeof *copy->twin);
+    copy->first = pmesh_alloc(a, n, sizeof *copy->first);
+    copy->position = pmesh_alloc(a, n, sizeof *copy->position);
+    if (mesh->joined)
+        copy->fan = pmesh_alloc(a, corners, sizeof *copy->fan);
+    return copy->vertex && copy->twin && copy->first && copy->position &&
+           (copy->fan || !mesh->joined);
+}
+
+static void copy_block(void *user, uint32_t part, unsigned worker)
+{
+    const enc_reach *r = user;
+    const enc_surface *from = r->from, *to = &r->copy;
+    const size_t corner = 3 * (size_t)part * ENC_BLOCK;
+    const size_t corners = 3 * (size_t)r->mesh->face_count;
+    const size_t v = (size_t)part * ENC_BLOCK;
+
+    (void)worker;
+    if (corner < corners) {
+        const size_t left = corners - corner, block = 3 * (size_t)ENC_BLOCK;
+        const size_t size = (left < block ? left : block) * sizeof *to->vertex;
+        memcpy(to->vertex + corner, from->vertex + corner, size);
+        memcpy(to->twin + corner, from->twin + corner, size);
+        if (to->fan)
+            memcpy(to->fan + corner, from->fan + corner, size);
+    }
+    if (v < r->mesh->vertex_count) {
+        const size_t count = enc_block_end(r->mesh, part) - v;
+        memcpy(to->first + v, from->first + v, count * sizeof *to->first);
+        memcpy(to->position + v, from->position + v,
+               count * sizeof *to->position);
+    }
+}
+
+static uint32_t copy_parts(const enc_mesh *mesh)
+{
+    const uint32_t faces = (mesh->face_count + ENC_BLOCK - 1) / ENC_BLOCK;
+    return faces > enc_blocks(mesh) ? faces : enc_blocks(mesh);
+}
+
+pmesh_status enc_reach_create(const enc_mesh *mesh, bool later, enc_reach *out)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const bool helped = mesh->pool && mesh->vertex_count >= ENC_SHARED_VERTICES;
+    bool good = true;
+
+    *out = (enc_reach){ .mesh = mesh, .later = later && helped };
+    out->beside = pmesh_alloc(a, mesh->vertex_count, sizeof *out->beside);
+    if (helped)
+        out->guess = pmesh_alloc(a, mesh->vertex_count, sizeof *out->guess);
+    if (out->later)
+        good = create_copy(mesh, &out->copy);
+    if (!good || !out->beside || (helped && !out->guess)) {
+        enc_reach_destroy(out);
         return PMESH_E_MEMORY;
+    }
     for (uint32_t v = 0; v < mesh->vertex_count; v++)
         out->beside[v] = v;
     return PMESH_OK;
@@ -23,11 +84,26 @@ pmesh_status enc_reach_create(const enc_mesh *mesh, enc_reach *out)
 
 void enc_reach_destroy(enc_reach *r)
 {
-    if (r->mesh)
-        pmesh_release(&r->mesh->allocator, r->beside, r->mesh->vertex_count,
-                      sizeof *r->beside);
+    if (r->mesh) {
+        const pmesh_allocator *a = &r->mesh->allocator;
+        const uint32_t n = r->mesh->vertex_count;
+        pmesh_release(a, r->beside, n, sizeof *r->beside);
+        pmesh_release(a, r->guess, n, sizeof *r->guess);
+        enc_surface_destroy(&r->copy);
+    }
     *r = (enc_reach){ 0 };
 }
+
+/* ---- searches ---- */
+
+/* A search. It goes on while `least` is above `enough`, and would have ended as
+ * it has if that had been anything below `before`. */
+typedef struct search {
+    const enc_surface *surface;
+    double x[3], enough;
+    double least, before; /* squares: the least so far, and the one before */
+    uint32_t face;        /* that is so close */
+} search;
 
 static void to_doubles(const int32_t p[3], double out[3])
 {
@@ -44,75 +120,157 @@ static double from_face(const enc_surface *s, uint32_t face, const double x[3])
     return enc_distance_square(x, corner[0], corner[1], corner[2]);
 }
 
-/* Looks for a face around v that is closer than *least, until one is close
- * enough; true if there is one, which becomes *face. */
-static bool look_around(const enc_surface *s, uint32_t v, const double x[3],
-                        double enough, double *least, uint32_t *face)
+/* Looks for a face around v that is closer, until one is close enough; true if
+ * there is one. */
+static bool look_around(search *look, uint32_t v)
 {
+    const enc_surface *s = look->surface;
     uint32_t start = s->first[v];
     bool found = false;
 
-    for (uint32_t h = start; h != ENC_NONE && *least > enough;
+    for (uint32_t h = start; h != ENC_NONE && look->least > look->enough;
          h = enc_around(s, &start, h)) {
-        const double square = from_face(s, h / 3, x);
-        if (square < *least) {
-            *least = square;
-            *face = h / 3;
+        const double square = from_face(s, h / 3, look->x);
+        if (square < look->least) {
+            look->before = look->least;
+            look->least = square;
+            look->face = h / 3;
             found = true;
         }
     }
     return found;
 }
 
-/* From the faces around v to closer ones around their corners, and so on. *v
- * becomes a corner of the last one. */
-static double look_for(const enc_surface *s, uint32_t *v, const double x[3],
-                       double enough)
+/* From the faces around v to closer ones around their corners, and so on.
+ * Returns a corner of the last one. */
+static uint32_t look_for(search *look, uint32_t v)
 {
-    double least = INFINITY;
-    uint32_t face = 0;
-    bool closer = look_around(s, *v, x, enough, &least, &face);
+    bool closer = look_around(look, v);
 
-    while (closer && least > enough) {
-        const uint32_t *corner = &s->vertex[3 * face];
-        const uint32_t from = *v, last = face;
+    while (closer && look->least > look->enough) {
+        const uint32_t *corner = &look->surface->vertex[3 * look->face];
+        const uint32_t from = v, last = look->face;
         closer = false;
-        for (int k = 0; k < 3 && face == last; k++)
-            if (corner[k] != from &&
-                look_around(s, corner[k], x, enough, &least, &face)) {
-                *v = corner[k];
+        for (int k = 0; k < 3 && look->face == last; k++)
+            if (corner[k] != from && look_around(look, corner[k])) {
+                v = corner[k];
                 closer = true;
             }
     }
-    return least;
+    return v;
 }
 
-static void look_from(enc_reach *r, const enc_surface *s,
-                      const enc_schedule *made, uint32_t vertex)
+/* From the vertex that is beside it; where it is then is returned. */
+static uint32_t look_from(const enc_reach *r, uint32_t vertex, search *look)
 {
-    uint32_t *v = &r->beside[vertex];
-    double x[3];
+    const uint32_t v = r->beside[vertex];
 
-    while (made->vertex_end[*v] != ENC_NONE)
-        *v = made->contraction[made->vertex_end[*v]].parent;
-    if (s->first[*v] == ENC_NONE)
-        return;
-    to_doubles(r->mesh->position[vertex], x);
-    const double square = look_for(s, v, x, r->most);
-    if (square > r->most)
-        r->most = square;
+    *look = (search){ .surface = r->from, .enough = r->most,
+                      .least = INFINITY, .before = INFINITY };
+    if (r->from->first[v] == ENC_NONE) {
+        look->least = 0;
+        return v;
+    }
+    to_doubles(r->mesh->position[vertex], look->x);
+    return look_for(look, v);
+}
+
+static void reach_from(enc_reach *r, uint32_t vertex)
+{
+    search look;
+
+    r->beside[vertex] = look_from(r, vertex, &look);
+    if (look.least > r->most)
+        r->most = look.least;
+}
+
+/* With the bound as it is now. */
+static void guess_block(void *user, uint32_t part, unsigned worker)
+{
+    const enc_reach *r = user;
+    const uint32_t end = enc_block_end(r->mesh, part);
+    search look;
+
+    (void)worker;
+    for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
+        enc_guess *guess = &r->guess[v];
+        guess->beside = look_from(r, v, &look);
+        /* Rounded down; what is too far is looked at again in any case. */
+        guess->below = look.least > r->most
+                           ? 0
+                           : (float)(look.before * (1 - FLT_EPSILON));
+    }
+}
+
+/* ---- bounds ---- */
+
+typedef struct descent {
+    const enc_reach *reach;
+    const enc_schedule *made;
+} descent;
+
+/* From what was beside a vertex to what this has become. */
+static void descend_block(void *user, uint32_t part, unsigned worker)
+{
+    const descent *d = user;
+    const enc_schedule *made = d->made;
+    uint32_t *beside = d->reach->beside;
+    const uint32_t end = enc_block_end(d->reach->mesh, part);
+
+    (void)worker;
+    for (uint32_t v = part * ENC_BLOCK; v < end; v++)
+        while (made->vertex_end[beside[v]] != ENC_NONE)
+            beside[v] = made->contraction[made->vertex_end[beside[v]]].parent;
+}
+
+static enc_pool *pool_of(const enc_reach *r)
+{
+    return r->guess ? r->mesh->pool : NULL;
+}
+
+static void start(enc_reach *r, const enc_surface *s, const enc_schedule *made)
+{
+    descent d = { r, made };
+
+    r->from = s;
+    enc_pool_run(pool_of(r), enc_blocks(r->mesh), descend_block, &d);
+    for (uint32_t v = 0; v < r->mesh->vertex_count; v += PIONEERS)
+        reach_from(r, v);
+}
+
+static double settle(enc_reach *r)
+{
+    for (uint32_t v = 0; v < r->mesh->vertex_count; v++) {
+        if (r->guess && r->most < (double)r->guess[v].below)
+            r->beside[v] = r->guess[v].beside;
+        else
+            reach_from(r, v);
+    }
+    return sqrt(r->most);
 }
 
 double enc_reach_bound(enc_reach *r, const enc_surface *s,
                        const enc_schedule *made)
 {
-    const uint32_t count = r->mesh->vertex_count;
+    start(r, s, made);
+    if (r->guess)
+        enc_pool_run(pool_of(r), enc_blocks(r->mesh), guess_block, r);
+    return settle(r);
+}
 
-    for (uint32_t v = 0; v < count; v += PIONEERS)
-        look_from(r, s, made, v);
-    for (uint32_t v = 0; v < count; v++)
-        look_from(r, s, made, v);
-    return sqrt(r->most);
+void enc_reach_begin(enc_reach *r, const enc_surface *s,
+                     const enc_schedule *made)
+{
+    start(r, s, made);
+    enc_pool_run(pool_of(r), copy_parts(r->mesh), copy_block, r);
+    r->from = &r->copy;
+    enc_pool_begin(pool_of(r), enc_blocks(r->mesh), guess_block, r);
+}
+
+double enc_reach_end(enc_reach *r)
+{
+    enc_pool_end(pool_of(r));
+    return settle(r);
 }
 
 /* From the faces around v that stay, if the ends are both at `place`; but not

@@ -13,6 +13,11 @@
  * bound of the level before: bounds shall not fall. So most look at few faces.
  *
  * In a joined mesh, vertices of pieces that have vanished do not count.
+ *
+ * The bound that ends a search grows from vertex to vertex. Several threads
+ * guess, with the bound as it is when they begin, where each search ends; the
+ * few that would end elsewhere by now are made again, one after the other. So
+ * the result is that of one thread.
  */
 #ifndef ENC_REACH_H
 #define ENC_REACH_H
@@ -20,18 +25,35 @@
 #include "encoder/enc_schedule.h"
 #include "encoder/enc_surface.h"
 
+typedef struct enc_guess {
+    uint32_t beside;
+    float below; /* the guess is right as long as the bound is below this */
+} enc_guess;
+
 typedef struct enc_reach {
     const enc_mesh *mesh;
     uint32_t *beside; /* per vertex of the full mesh: one of the level */
+    enc_guess *guess; /* per vertex; NULL without helpers */
+    bool later;       /* enc_reach_begin() may be called */
+    enc_surface copy; /* then: of the surface */
+    const enc_surface *from; /* what is searched: the surface, or the copy */
     double most;      /* squared, in steps: the bound of the last level */
 } enc_reach;
 
-pmesh_status enc_reach_create(const enc_mesh *mesh, enc_reach *out);
+/* later: the next batch does not depend on the bound. */
+pmesh_status enc_reach_create(const enc_mesh *mesh, bool later, enc_reach *out);
 void enc_reach_destroy(enc_reach *reach);
 
 /* The bound for the surface as it is now, in steps; `made` led to it. */
 double enc_reach_bound(enc_reach *reach, const enc_surface *s,
                        const enc_schedule *made);
+
+/* The same in two steps, of which the first takes what it needs of the surface:
+ * contractions may go on between them, while the others search. The pool is
+ * taken until then. */
+void enc_reach_begin(enc_reach *reach, const enc_surface *s,
+                     const enc_schedule *made);
+double enc_reach_end(enc_reach *reach);
 
 /* How far the ends of a pair, where they are now, will be from the faces around
  * them when they are one at `place`; in steps. */

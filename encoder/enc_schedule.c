@@ -169,6 +169,42 @@ static bool count_segments(const enc_mesh *mesh, enc_run *run)
     return true;
 }
 
+/* What the other workers need; see enc_collect.c. */
+static bool create_scratch(const enc_mesh *mesh, enc_run *run)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const unsigned others = enc_pool_workers(mesh->pool) - 1;
+
+    if (others == 0)
+        return true;
+    run->scratch = pmesh_alloc_zero(a, others, sizeof *run->scratch);
+    run->views = pmesh_alloc_zero(a, others, sizeof *run->views);
+    if (!run->scratch || !run->views)
+        return false;
+    for (unsigned i = 0; i < others; i++) {
+        enc_scratch *own = &run->scratch[i];
+        own->mark = pmesh_alloc_zero(a, mesh->vertex_count, sizeof *own->mark);
+        if (!own->mark ||
+            !enc_looks_fate(&run->pricing.looks, mesh, &own->fate))
+            return false;
+    }
+    return true;
+}
+
+static void destroy_scratch(const enc_mesh *mesh, enc_run *run)
+{
+    const pmesh_allocator *a = &mesh->allocator;
+    const unsigned others = enc_pool_workers(mesh->pool) - 1;
+
+    for (unsigned i = 0; run->scratch && i < others; i++) {
+        enc_scratch *own = &run->scratch[i];
+        pmesh_release(a, own->mark, mesh->vertex_count, sizeof *own->mark);
+        pmesh_release(a, own->fate, mesh->wedge_count, sizeof *own->fate);
+    }
+    pmesh_release(a, run->scratch, others, sizeof *run->scratch);
+    pmesh_release(a, run->views, others, sizeof *run->views);
+}
+
 static pmesh_status run_create(const enc_mesh *mesh,
                                const pmesh_encoder_config *config,
                                enc_schedule *schedule, enc_run *run)
@@ -186,20 +222,23 @@ static pmesh_status run_create(const enc_mesh *mesh,
         status = enc_queue_create(a, count_edges(mesh) + near_room(mesh),
                                   &run->queue);
     if (status == PMESH_OK)
-        status = enc_reach_create(mesh, &run->reach);
+        status = enc_reach_create(mesh, !(config->base_error > 0), &run->reach);
     if (status == PMESH_OK)
         status = find_near(mesh, run);
-    if (status == PMESH_OK && !count_segments(mesh, run))
+    if (status == PMESH_OK &&
+        (!count_segments(mesh, run) || !create_scratch(mesh, run)))
         status = PMESH_E_MEMORY;
     if (status != PMESH_OK)
         return status;
     run->edge_state = pmesh_alloc_zero(
         a, 3 * (size_t)mesh->face_count + near_room(mesh), 1);
     run->taken = pmesh_alloc_zero(a, n, sizeof *run->taken);
-    run->drift = pmesh_alloc_zero(a, n, sizeof *run->drift);
+    if (config->base_error > 0)
+        run->drift = pmesh_alloc_zero(a, n, sizeof *run->drift);
     if (mesh->joined)
         run->role = pmesh_alloc_zero(a, n, sizeof *run->role);
-    return run->edge_state && run->taken && run->drift &&
+    return run->edge_state && run->taken &&
+                   (run->drift || !(config->base_error > 0)) &&
                    (run->role || !mesh->joined)
                ? PMESH_OK
                : PMESH_E_MEMORY;
@@ -210,6 +249,7 @@ static void run_destroy(const enc_mesh *mesh, enc_run *run)
 {
     const pmesh_allocator *a = &mesh->allocator;
 
+    destroy_scratch(mesh, run);
     enc_surface_destroy(&run->surface);
     enc_pricing_destroy(mesh, &run->pricing);
     if (run->queue.list)
@@ -339,7 +379,9 @@ static void undo_batch(enc_run *run)
 static bool close_batch(enc_run *run)
 {
     enc_schedule *out = run->out;
-    const double bound = enc_reach_bound(&run->reach, &run->surface, out);
+    const double bound =
+        run->reach.later ? 0
+                         : enc_reach_bound(&run->reach, &run->surface, out);
 
     if (bound > run->error_limit) {
         undo_batch(run);
@@ -348,6 +390,7 @@ static bool close_batch(enc_run *run)
     }
     out->batch_error[out->batch_count] = bound;
     out->batch_first[++out->batch_count] = out->contraction_count;
+    run->bound_is_due = run->reach.later;
     return true;
 }
 
@@ -372,6 +415,9 @@ static void run_batches(enc_run *run, uint32_t variant)
         else if (taken == 0)
             break;
     }
+    if (run->bound_is_due)
+        out->batch_error[out->batch_count - 1] =
+            enc_reach_bound(&run->reach, &run->surface, out);
 }
 
 static pmesh_simplify_end reason(const enc_run *run)

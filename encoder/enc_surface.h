@@ -97,6 +97,26 @@ static inline bool enc_on_boundary(const enc_surface *s, uint32_t v)
     return s->twin[first] == ENC_NONE || enc_next_fan(s, first) != ENC_NONE;
 }
 
+/* Loops over vertices or faces are shared among threads by blocks of so many;
+ * small surfaces are not worth it. */
+enum { ENC_BLOCK = 1024, ENC_SHARED_VERTICES = 1000 };
+
+static inline uint32_t enc_blocks(const enc_mesh *mesh)
+{
+    return (mesh->vertex_count + ENC_BLOCK - 1) / ENC_BLOCK;
+}
+
+static inline uint32_t enc_block_end(const enc_mesh *mesh, uint32_t block)
+{
+    const uint32_t end = (block + 1) * ENC_BLOCK;
+    return end < mesh->vertex_count ? end : mesh->vertex_count;
+}
+
+static inline enc_pool *enc_surface_pool(const enc_surface *s)
+{
+    return s->vertex_count < ENC_SHARED_VERTICES ? NULL : s->mesh->pool;
+}
+
 /* The pair of half-edge h; its child is the start of h, or the end. */
 enc_pair enc_surface_pair(const enc_surface *s, uint32_t h, bool child_is_end);
 

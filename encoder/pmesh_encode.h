@@ -148,8 +148,13 @@ typedef struct pmesh_encoder_config {
     pmesh_cost_hook cost_hook; /* of PMESH_COST_CUSTOM; asked about directed
                                   contractions: the pair's second vertex goes */
     void *cost_user;           /* of the hook */
-    uint32_t threads;          /* at most so many; this version works in
-                                  the calling thread alone */
+    uint32_t threads;          /* at most so many, the calling one among them;
+                                  default 1. More are POSIX threads for the time
+                                  of the call; if there are none to be had, the
+                                  calling thread does all. Hooks are called in
+                                  it alone, but the allocator's with
+                                  PMESH_COMPACT: there by others, too, one at a
+                                  time. With PMESH_COST_CUSTOM always 1 */
     pmesh_progress progress;   /* NULL: none */
     void *progress_user;
 } pmesh_encoder_config;

@@ -10,6 +10,7 @@
 #include "tools/scene_file.h"
 #include "tools/scene_parts.h"
 #include "tools/scene_write.h"
+#include "tools/workers.h"
 
 static int collect(void *user, const void *data, size_t size)
 {
@@ -183,22 +184,103 @@ static int put_into_glb(const scene_parts *parts, const asset_bytes *streams,
     return code;
 }
 
-static int bake_meshes(const scene_parts *parts, bake_mesh bake, void *user,
-                       bake_report *report, asset_bytes *streams)
+typedef struct baking {
+    const scene_parts *parts;
+    bake_mesh bake;
+    void *user;
+    const bake_report *report;
+    asset_bytes *streams;
+    size_t *order; /* of the meshes: those of most faces first */
+    size_t alone;  /* of these so many, one after the other */
+    struct {
+        bake_report report;
+        int code;
+    } *made; /* per mesh */
+    unsigned threads; /* for each of them */
+} baking;
+
+static void bake_in_order(void *user, size_t i)
 {
-    for (size_t i = 0; i < parts->mesh_count; i++) {
-        bake_report one = { .input = report->input, .output = report->output };
-        const int code = bake(user, parts->meshes[i].name,
-                              &parts->meshes[i].mesh, &one, &streams[i]);
-        if (code != CMD_DONE)
-            return code;
-        add_counts(&report->encode, &one.encode);
+    const baking *b = user;
+    const size_t m = b->order[b->alone + i];
+
+    b->made[m].report = (bake_report){ .input = b->report->input,
+                                       .output = b->report->output };
+    b->made[m].code = b->bake(b->user, b->parts->meshes[m].name,
+                              &b->parts->meshes[m].mesh, b->threads,
+                              &b->made[m].report, &b->streams[m]);
+}
+
+static size_t faces_of(const baking *b, size_t i)
+{
+    return b->parts->meshes[b->order[i]].mesh.face_count;
+}
+
+/* Returns the number of faces. */
+static size_t sort_meshes(const baking *b)
+{
+    size_t sum = 0;
+
+    for (size_t i = 0; i < b->parts->mesh_count; i++) {
+        const size_t faces = b->parts->meshes[i].mesh.face_count;
+        size_t at = i;
+        for (; at > 0 && faces_of(b, at - 1) < faces; at--)
+            b->order[at] = b->order[at - 1];
+        b->order[at] = i;
+        sum += faces;
     }
+    return sum;
+}
+
+/* A mesh with more than a thread's share of the faces goes first and has all
+ * the threads; the others get one each. */
+static int bake_all(baking *b, unsigned threads)
+{
+    const size_t count = b->parts->mesh_count;
+    size_t left = sort_meshes(b);
+
+    b->threads = threads;
+    while (b->alone < count &&
+           (threads == 1 || faces_of(b, b->alone) > left / threads)) {
+        left -= faces_of(b, b->alone);
+        bake_in_order(b, 0);
+        if (b->made[b->order[b->alone++]].code != CMD_DONE)
+            break;
+    }
+    if (b->alone == 0 || b->made[b->order[b->alone - 1]].code == CMD_DONE) {
+        b->threads = 1;
+        workers_run(threads, count - b->alone, bake_in_order, b);
+    }
+    for (size_t i = 0; i < count; i++)
+        if (b->made[i].code != CMD_DONE)
+            return b->made[i].code;
     return CMD_DONE;
 }
 
-int bake_scene(const file_data *data, bake_mesh bake, void *user, bool glb,
-               bool leave_images, bake_report *report, asset_bytes *out)
+static int bake_meshes(const scene_parts *parts, unsigned threads,
+                       bake_mesh bake, void *user, bake_report *report,
+                       asset_bytes *streams)
+{
+    baking b = { .parts = parts, .bake = bake, .user = user,
+                 .report = report, .streams = streams };
+    int code = CMD_IO;
+
+    b.order = calloc(parts->mesh_count, sizeof *b.order);
+    b.made = calloc(parts->mesh_count, sizeof *b.made);
+    if (b.order && b.made)
+        code = bake_all(&b, threads);
+    else
+        report_error(file_input_name(report->input), NULL, "out of memory");
+    for (size_t i = 0; code == CMD_DONE && i < parts->mesh_count; i++)
+        add_counts(&report->encode, &b.made[i].report.encode);
+    free(b.order);
+    free(b.made);
+    return code;
+}
+
+int bake_scene(const file_data *data, unsigned threads, bake_mesh bake,
+               void *user, bool glb, bool leave_images, bake_report *report,
+               asset_bytes *out)
 {
     const bool standard = strcmp(report->input, "-") == 0;
     const double start = progress_clock();
@@ -219,7 +301,7 @@ int bake_scene(const file_data *data, bake_mesh bake, void *user, bool glb,
     if (!streams)
         report_error(file_input_name(report->input), NULL, "out of memory");
     else
-        code = bake_meshes(&parts, bake, user, report, streams);
+        code = bake_meshes(&parts, threads, bake, user, report, streams);
     if (code == CMD_DONE && glb)
         code = put_into_glb(&parts, streams, report, out);
     else if (code == CMD_DONE)

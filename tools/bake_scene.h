@@ -8,10 +8,12 @@
 #include "tools/bake_report.h"
 #include "tools/file.h"
 
-/* Bakes one mesh into `out`, fills report->encode; returns an exit code and has
- * said why unless it is CMD_DONE. */
+/* Bakes one mesh into `out` with so many threads, fills report->encode; returns
+ * an exit code and has said why unless it is CMD_DONE. Several may be baked at
+ * a time, but only with one thread each. */
 typedef int (*bake_mesh)(void *user, const char *name, const asset *mesh,
-                         bake_report *report, asset_bytes *out);
+                         unsigned threads, bake_report *report,
+                         asset_bytes *out);
 
 /*
  * Bakes the scene in `data` into `out`: each of its meshes by `bake`, then all
@@ -19,7 +21,8 @@ typedef int (*bake_mesh)(void *user, const char *name, const asset *mesh,
  * glb: into a GLB that shows the base meshes and holds the scene's file.
  * leave_images: those in files beside the input stay there.
  */
-int bake_scene(const file_data *data, bake_mesh bake, void *user, bool glb,
-               bool leave_images, bake_report *report, asset_bytes *out);
+int bake_scene(const file_data *data, unsigned threads, bake_mesh bake,
+               void *user, bool glb, bool leave_images, bake_report *report,
+               asset_bytes *out);
 
 #endif

@@ -19,6 +19,7 @@
 #include "tools/progress.h"
 #include "tools/scene_parts.h"
 #include "tools/triple.h"
+#include "tools/workers.h"
 
 typedef struct options {
     const char *input, *output, *camera;
@@ -154,7 +155,8 @@ static const args_option option_table[] = {
       AT(input), .help = "the same as IN" },
     { .name = "threads", .letter = 'j', .kind = ARGS_COUNT, .value = "N",
       .min = 1, .max = 256, AT(threads),
-      .help = "at most N threads; this version works with one" },
+      .help = "at most N threads (default: the processors); the file is\n"
+              "the same with any number" },
     { .name = "json", .kind = ARGS_FLAG, AT(json),
       .help = "report as one JSON object on stdout" },
     { .name = "progress", .kind = ARGS_FLAG, AT(progress),
@@ -256,7 +258,6 @@ static void configure(const options *o, pmesh_encoder_config *config)
     config->measure = o->measure;
     config->threshold = o->threshold;
     config->topology = (pmesh_topology)o->topology;
-    config->threads = o->threads;
 }
 
 static int collect(void *user, const void *data, size_t size)
@@ -335,7 +336,8 @@ static int encode_failed(const char *name, pmesh_status status,
 
 /* Encodes `mesh`; its bytes go to `out`. */
 static int encode(const options *o, const char *name, const asset *mesh,
-                  const guide *wish, bake_report *report, asset_bytes *out)
+                  unsigned threads, const guide *wish, bake_report *report,
+                  asset_bytes *out)
 {
     pmesh_attribute_input attributes[PMESH_MAX_ATTRIBUTES];
     pmesh_encoder_config config = pmesh_encoder_config_default();
@@ -360,9 +362,11 @@ static int encode(const options *o, const char *name, const asset *mesh,
         .attribute_count = o->no_attributes ? 0 : mesh->attribute_count,
     };
     configure(o, &config);
+    config.threads = threads;
     if (guide_says_something(&wish->use))
         config.guide = &wish->use;
-    progress_begin(&bar, o->quiet      ? PROGRESS_OFF
+    /* With a thread it may be one mesh of several at a time: no bar. */
+    progress_begin(&bar, o->quiet || threads < o->threads ? PROGRESS_OFF
                          : o->progress ? PROGRESS_ON
                                        : PROGRESS_AUTO);
     config.progress = progress_update;
@@ -376,12 +380,13 @@ static int encode(const options *o, const char *name, const asset *mesh,
 }
 
 static int bake_guided(const options *o, const char *name, const asset *mesh,
-                       bake_report *report, asset_bytes *out)
+                       unsigned threads, bake_report *report,
+                       asset_bytes *out)
 {
     guide wish;
     int code = guide_of(o, name, mesh, &report->notes, &wish);
     if (code == CMD_DONE)
-        code = encode(o, name, mesh, &wish, report, out);
+        code = encode(o, name, mesh, threads, &wish, report, out);
     guide_free(&wish);
     return code;
 }
@@ -415,7 +420,8 @@ static int bake_merged(const options *o, const file_data *data,
         return code;
     report->seconds_read += progress_clock() - start;
     report_note_lines(&report->notes, mesh.warnings);
-    code = bake_guided(o, file_input_name(report->input), &mesh, report, bytes);
+    code = bake_guided(o, file_input_name(report->input), &mesh, o->threads,
+                       report, bytes);
     asset_free(&mesh);
     if (code == CMD_DONE && (int)report->encode.base_coder != o->base)
         report_note(&report->notes,
@@ -428,9 +434,9 @@ static int bake_merged(const options *o, const file_data *data,
 }
 
 static int bake_one(void *user, const char *name, const asset *mesh,
-                    bake_report *report, asset_bytes *out)
+                    unsigned threads, bake_report *report, asset_bytes *out)
 {
-    return bake_guided(user, name, mesh, report, out);
+    return bake_guided(user, name, mesh, threads, report, out);
 }
 
 static bool wants_glb(const options *o)
@@ -459,8 +465,8 @@ static int bake(options *o, const file_data *data, bake_report *report)
     int code = CMD_USAGE;
 
     if (is_scene(o, data, report->input))
-        code = bake_scene(data, bake_one, o, wants_glb(o), o->textures == 1,
-                          report, &bytes);
+        code = bake_scene(data, o->threads, bake_one, o, wants_glb(o),
+                          o->textures == 1, report, &bytes);
     else if (wants_glb(o))
         report_error(file_input_name(report->input), NULL,
                      "only a glTF scene can be baked into a .glb");
@@ -515,6 +521,7 @@ int cmd_bake(int argc, char **argv)
         .uv_weight = defaults.texcoord_weight,
         .color_weight = defaults.color_weight,
         .generic_weight = defaults.generic_weight,
+        .threads = workers_available(),
     };
     int count;
     file_data data;

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "tools/args.h"
 #include "tools/batch.h"
@@ -17,6 +16,7 @@
 #include "tools/json.h"
 #include "tools/progress.h"
 #include "tools/report.h"
+#include "tools/workers.h"
 
 typedef struct options {
     const char *output, *report;
@@ -77,15 +77,16 @@ typedef struct batch {
 
 /* ---- one file ----------------------------------------------------------- */
 
-/* In a process of its own: bake [what the user gave] -q --json -o OUT -- IN */
+/* In a process of its own, and so in one thread unless the user wants more:
+ * bake -j1 [what the user gave] -q --json -o OUT -- IN */
 static int run_job(void *user, size_t k)
 {
     const batch *b = user;
     const batch_job *job = &b->list.jobs[b->todo[k]];
     char name[] = "bake", quiet[] = "--quiet", as_json[] = "--json";
-    char output[] = "--output", end[] = "--";
+    char output[] = "--output", end[] = "--", thread[] = "-j1";
     char **argv =
-        calloc((size_t)b->bake_argument_count + 8, sizeof *argv);
+        calloc((size_t)b->bake_argument_count + 9, sizeof *argv);
     asset_error error;
     int argc = 0;
 
@@ -98,6 +99,7 @@ static int run_job(void *user, size_t k)
         return CMD_IO;
     }
     argv[argc++] = name;
+    argv[argc++] = thread;
     for (int a = 0; a < b->bake_argument_count; a++)
         argv[argc++] = b->bake_arguments[a];
     argv[argc++] = quiet;
@@ -241,12 +243,9 @@ static int run(batch *b)
 {
     const options *o = b->options;
     const double start = progress_clock();
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     const batch_work work = {
         .count = b->todo_count,
-        .processes = o->jobs         ? o->jobs
-                     : processors > 0 ? (unsigned)processors
-                                      : 1,
+        .processes = o->jobs ? o->jobs : workers_available(),
         .run = run_job, .done = end_job, .user = b,
     };
     asset_error error;

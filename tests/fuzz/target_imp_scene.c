@@ -11,9 +11,10 @@
 enum { MOST_FACES = 1000 };
 
 static int bake(void *user, const char *name, const asset *mesh,
-                bake_report *report, asset_bytes *out)
+                unsigned threads, bake_report *report, asset_bytes *out)
 {
     (void)name;
+    (void)threads;
     fuzz_asset_sound(mesh);
     if (mesh->face_count > MOST_FACES)
         return CMD_ASSET;
@@ -48,7 +49,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     bake_report report = { .input = "-", .output = "-" };
     asset_bytes out = { 0 };
 
-    if (bake_scene(&data, bake, &dice, false, false, &report, &out) ==
+    if (bake_scene(&data, 1, bake, &dice, false, false, &report, &out) ==
         CMD_DONE)
         check_scene(&out);
     asset_bytes_free(&out);

@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: MIT */
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "encoder/enc_pool.h"
+#include "format/alloc.h"
+#include "tests/unit/shapes.h"
+#include "tests/unit/test.h"
+
+/* ---- the pool ------------------------------------------------------------ */
+
+enum { PARTS = 1000, WORKERS = 3 };
+
+typedef struct counts {
+    uint8_t part[PARTS];
+    uint32_t worker[WORKERS];
+} counts;
+
+static void count_part(void *user, uint32_t part, unsigned worker)
+{
+    counts *c = user;
+
+    c->part[part]++;
+    c->worker[worker]++; /* a worker does one part at a time */
+}
+
+static enc_pool *pool_of(uint32_t threads)
+{
+    const pmesh_allocator a = pmesh_allocator_resolve((pmesh_allocator){ 0 });
+    return enc_pool_create(&a, threads);
+}
+
+static void check_counts(enc_pool *pool)
+{
+    counts c = { { 0 }, { 0 } };
+    uint32_t sum = 0;
+
+    enc_pool_run(pool, PARTS, count_part, &c);
+    for (int i = 0; i < PARTS; i++)
+        CHECK(c.part[i] == 1);
+    for (int i = 0; i < WORKERS; i++)
+        sum += c.worker[i];
+    CHECK(sum == PARTS);
+    for (unsigned i = enc_pool_workers(pool); i < WORKERS; i++)
+        CHECK(c.worker[i] == 0);
+}
+
+TEST(pool_does_each_part_once)
+{
+    for (uint32_t threads = 0; threads <= WORKERS; threads++) {
+        enc_pool *pool = pool_of(threads);
+        CHECK(threads > 1 || !pool);
+        for (int i = 0; i < 50; i++)
+            check_counts(pool);
+        enc_pool_destroy(pool);
+    }
+}
+
+TEST(pool_leaves_the_calling_thread_free)
+{
+    enc_pool *pool = pool_of(2);
+    counts c = { { 0 }, { 0 } };
+
+    enc_pool_begin(pool, PARTS, count_part, &c);
+    enc_pool_end(pool);
+    for (int i = 0; i < PARTS; i++)
+        CHECK(c.part[i] == 1);
+    enc_pool_run(pool, 0, count_part, &c);
+    enc_pool_destroy(pool);
+}
+
+/* ---- bytes --------------------------------------------------------------- */
+
+static shape_bytes bake(const shape_mesh *shape, pmesh_encoder_config config,
+                        uint32_t threads)
+{
+    pmesh_encode_report report = { .clock = NULL };
+    shape_bytes bytes;
+
+    config.threads = threads;
+    CHECK(shape_bake(shape, &config, &bytes, &report) == PMESH_OK);
+    return bytes;
+}
+
+static void check_threads(const shape_mesh *shape,
+                          const pmesh_encoder_config *config)
+{
+    const shape_bytes one = bake(shape, *config, 1);
+
+    for (uint32_t threads = 2; threads <= 4; threads += 2) {
+        const shape_bytes more = bake(shape, *config, threads);
+        CHECK(one.size == more.size &&
+              memcmp(one.data, more.data, one.size) == 0);
+        free(more.data);
+    }
+    free(one.data);
+}
+
+/* Large enough for several blocks of vertices. */
+static const struct {
+    shape_kind kind;
+    uint32_t size;
+} subjects[] = {
+    { SHAPE_SPHERE, 34 }, { SHAPE_TERRAIN, 50 }, { SHAPE_TORUS, 50 },
+    { SHAPE_FACETS, 16 }, { SHAPE_SOUP, 24 },    { SHAPE_PIECES, 30 },
+};
+
+static void check_all(const pmesh_encoder_config *config)
+{
+    for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
+        shape_mesh *shape = shape_make(subjects[i].kind, subjects[i].size, 7);
+        check_threads(shape, config);
+        shape_free(shape);
+    }
+}
+
+TEST(threads_do_not_change_a_byte_of_any_profile)
+{
+    for (int profile = PMESH_COMPACT; profile <= PMESH_QUALITY; profile++) {
+        pmesh_encoder_config config = pmesh_encoder_config_default();
+        config.profile = (pmesh_profile)profile;
+        check_all(&config);
+    }
+}
+
+TEST(threads_do_not_change_a_byte_of_moving_vertices)
+{
+    for (int metric = 0; metric < 2; metric++) {
+        pmesh_encoder_config config = pmesh_encoder_config_default();
+        config.placement = PMESH_OPTIMAL;
+        config.metric = (pmesh_metric)metric;
+        check_all(&config);
+    }
+}
+
+TEST(threads_do_not_change_a_byte_of_bounds_and_measures)
+{
+    pmesh_encoder_config config = pmesh_encoder_config_default();
+    config.measure = 1;
+    config.base_error = 0.02;
+    config.position_bits = 24;
+    config.topology = PMESH_TOPOLOGY_JOIN;
+    check_all(&config);
+}
+
+/* ---- hooks --------------------------------------------------------------- */
+
+typedef struct witness {
+    pthread_t caller;
+    bool elsewhere; /* a hook was called in another thread */
+    uint32_t cost, progress;
+} witness;
+
+static double watch_cost(void *user, const pmesh_simplify_pair *pair)
+{
+    witness *w = user;
+    w->elsewhere |= !pthread_equal(w->caller, pthread_self());
+    w->cost++;
+    return pair->quadric;
+}
+
+static int watch_progress(void *user, const char *stage, double done)
+{
+    witness *w = user;
+    (void)stage;
+    w->elsewhere |= !pthread_equal(w->caller, pthread_self());
+    w->progress++;
+    return done < 0;
+}
+
+TEST(hooks_are_called_in_the_thread_of_the_caller)
+{
+    for (int profile = PMESH_COMPACT; profile <= PMESH_QUALITY; profile++) {
+        shape_mesh *shape = shape_make(SHAPE_TORUS, 80, 1);
+        witness w = { .caller = pthread_self() };
+        pmesh_encoder_config config = pmesh_encoder_config_default();
+        config.profile = (pmesh_profile)profile;
+        config.progress = watch_progress;
+        config.progress_user = &w;
+        free(bake(shape, config, 4).data);
+        config.cost = PMESH_COST_CUSTOM;
+        config.cost_hook = watch_cost;
+        config.cost_user = &w;
+        free(bake(shape, config, 4).data);
+        CHECK(!w.elsewhere && w.cost > 0 && w.progress > 0);
+        shape_free(shape);
+    }
+}
+
+/* Of the allocator: one call at a time, wherever from. Fails once. */
+typedef struct meter {
+    unsigned calls, fail_at;
+    long blocks;
+    bool busy, overlapped;
+} meter;
+
+static void *meter_alloc(void *user, size_t size)
+{
+    meter *m = user;
+    m->overlapped |= m->busy;
+    m->busy = true;
+    void *block = ++m->calls == m->fail_at ? NULL : malloc(size);
+    m->blocks += block != NULL;
+    m->busy = false;
+    return block;
+}
+
+static void meter_release(void *user, void *block, size_t size)
+{
+    meter *m = user;
+    (void)size;
+    m->overlapped |= m->busy;
+    m->blocks -= block != NULL;
+    free(block);
+}
+
+TEST(threads_survive_a_lack_of_memory)
+{
+    shape_mesh *shape = shape_make(SHAPE_SPHERE, 24, 2);
+    for (int profile = PMESH_COMPACT; profile <= PMESH_BALANCED; profile++) {
+        pmesh_encode_report report = { .clock = NULL };
+        unsigned fail = 1, calls;
+        do {
+            meter m = { .fail_at = fail };
+            shape_bytes bytes;
+            pmesh_encoder_config config = pmesh_encoder_config_default();
+            config.profile = (pmesh_profile)profile;
+            config.threads = 3;
+            config.measure = 1;
+            config.allocator =
+                (pmesh_allocator){ meter_alloc, meter_release, &m };
+            const pmesh_status status =
+                shape_bake(shape, &config, &bytes, &report);
+            CHECK(status == PMESH_OK || status == PMESH_E_MEMORY);
+            CHECK(m.blocks == 0 && !m.overlapped);
+            calls = m.calls;
+            free(bytes.data);
+            fail += 1 + fail / 8;
+        } while (fail <= calls);
+    }
+    shape_free(shape);
+}
