@@ -223,7 +223,7 @@ test("materials, morph, bounds and rays", async () => {
 test("a measured file tells how far its levels are", async () => {
     for (const name of names) {
         const decoder = await Decoder.create();
-        decoder.push(read(name));
+        decoder.feed(read(name));
         const { measured, levels } = decoder.header;
         assert.equal(measured, name === "measured.pmesh");
         for (const { error, rms, furthest } of levels.slice(0, -1))
