@@ -216,6 +216,7 @@ check-damage:
 check-faults:
 	+@$(submake) $(B)/pmesh
 	@PMESH=$(B)/pmesh KILLS=200 STEP=1 tests/faults/run.sh
+	@PMESH=$(B)/pmesh tests/faults/batch.sh 200 8
 
 ## check-gltf: scenes of tests/scene by Khronos' glTF validator (npm)
 check-gltf:

@@ -176,6 +176,31 @@ void check_nodes(const gltf_model &model)
         fail(error);
 }
 
+/* The document is parsed anew by each who reads it, and let go of: parsed, it
+ * takes up to twenty times its size. */
+void take_meshes(const gltf_source &source, const gltf_model &model,
+                 scene_parts *out, std::vector<gltf_stream> *streams)
+{
+    const std::vector<double> scales = gltf_scales(source);
+    const gltf_json in =
+        gltf_json::parse(source.json, source.json + source.json_size);
+    streamer taker(model, out, streams);
+
+    out->meshes = static_cast<scene_mesh *>(
+        calloc(model.primitive_count + 1, sizeof *out->meshes));
+    if (!out->meshes)
+        throw std::bad_alloc();
+    for (size_t i = 0; i < model.mesh_count; i++) {
+        const size_t first = out->mesh_count;
+        taker.take(i, name_of(in, i));
+        for (size_t k = first; k < out->mesh_count; k++)
+            out->meshes[k].scale = static_cast<float>(scales[i]);
+    }
+    if (out->mesh_count == 0)
+        throw std::runtime_error("the scene has no triangles to refine");
+    note_kept(in, &out->notes);
+}
+
 void read(const gltf_source &source, holder *held, scene_parts *out)
 {
     gltf_budget budget = gltf_budget_for(source.file_size);
@@ -191,25 +216,8 @@ void read(const gltf_source &source, holder *held, scene_parts *out)
             fail(error);
     check_nodes(model);
 
-    const gltf_json in =
-        gltf_json::parse(source.json, source.json + source.json_size);
-    const std::vector<double> scales = gltf_scales(source);
     std::vector<gltf_stream> streams(model.primitive_count);
-    streamer taker(model, out, &streams);
-    out->meshes = static_cast<scene_mesh *>(
-        calloc(model.primitive_count + 1, sizeof *out->meshes));
-    if (!out->meshes)
-        throw std::bad_alloc();
-    for (size_t i = 0; i < model.mesh_count; i++) {
-        const size_t first = out->mesh_count;
-        taker.take(i, name_of(in, i));
-        for (size_t k = first; k < out->mesh_count; k++)
-            out->meshes[k].scale = static_cast<float>(scales[i]);
-    }
-    if (out->mesh_count == 0)
-        throw std::runtime_error("the scene has no triangles to refine");
-    note_kept(in, &out->notes);
-
+    take_meshes(source, model, out, &streams);
     const gltf_parts parts =
         gltf_take_apart(source, model, streams, budget, &out->notes);
     if (!pack_zlib(parts.document.data(), parts.document.size(),
