@@ -87,15 +87,19 @@ $(corrupt): $(call obj,$(wildcard tests/corrupt/*.c) \
   tests/reference/chunks.c tests/golden/golden_mesh.c tests/unit/shapes.c) \
   $(reference_obj) $(shared_obj) $(B)/libpmesh.a
 $(fuzzers): $(B)/fuzz/%: $(B)/tests/fuzz/target_%.o $(call obj,$(addprefix \
-  tests/,$(addprefix fuzz/,fuzz.c import.c pieces.c use.c) $(addprefix unit/,\
-  faces.c float_faces.c shapes.c)) $(if $(libfuzzer),,tests/fuzz/driver.c)) \
-  $(shared_obj) $(B)/libpmesh.a
+  tests/,$(addprefix fuzz/,fuzz.c pieces.c use.c) $(addprefix unit/,faces.c \
+  float_faces.c lods.c shapes.c)) $(if $(libfuzzer),,tests/fuzz/driver.c) tools/trig.c) \
+  $(B)/libpmesh.a
+# Those of the libraries alone are C alone, as MSan wants it.
+$(filter-out $(B)/fuzz/dec_% %/coder %/roundtrip \
+  %/simplify,$(fuzzers)): \
+  $(B)/tests/fuzz/import.o $(shared_obj)
 # Where the checks are on, and random bytes are to be refused, nobody mends.
 $(if $(libfuzzer),$(filter-out %/dec_raw,$(filter $(B)/fuzz/dec_% \
   $(B)/fuzz/tool_%,$(fuzzers)))): $(B)/tests/fuzz/mutator.o
 $(libs) $(B)/pmesh $(B)/unit $(B)/train $(fuzzers): $(B)/objects.list
 
-inputs = $(filter %.o %.a,$^)
+inputs = $(filter %.o,$^) $(filter %.a,$^)
 quiet = $(if $(V),,@echo '  $@' && )
 $(B)/%.a:
 	$(quiet)rm -f $@ && $(AR) rcs $@ $(inputs)

@@ -5,7 +5,9 @@
  * another order and number.
  */
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
+#include <cstring>
 
 #include <draco/compression/expert_encode.h>
 
@@ -94,13 +96,34 @@ bool add_faces(draco::Mesh *mesh, const scene_array &indices)
     return degenerate;
 }
 
+/* Draco computes the cell of a value without looking whether there is one: a
+ * number that is not finite, or far from the grid, is written out of bounds. */
+bool fits_grid(const scene_array &data)
+{
+    const scene_grid &grid = data.grid;
+    const float cell = grid.range / static_cast<float>(1u << grid.bits);
+    bool fits = grid.range > 0 && std::isfinite(grid.range);
+
+    for (size_t i = 0; i < data.count; i++)
+        for (size_t k = 0; k < data.components; k++) {
+            float value;
+            memcpy(&value, &data.bytes[i * data.stride + k * sizeof value],
+                   sizeof value);
+            if (!(std::fabs(value) < FLT_MAX / 4))
+                throw std::runtime_error("a number is too large for Draco");
+            const float from = value - grid.origin[k % 3];
+            fits = fits && from > -cell && from < grid.range + cell;
+        }
+    return fits;
+}
+
 void set_grid(draco::ExpertEncoder *encoder, int number,
               const scene_array &data)
 {
     const auto bits = static_cast<int>(data.grid.bits);
     if (data.component_type != GLTF_F32 || bits == 0)
         return; /* as they are */
-    if (data.grid.range > 0 && std::isfinite(data.grid.range))
+    if (fits_grid(data))
         encoder->SetAttributeExplicitQuantization(
             number, bits, static_cast<int>(data.components), data.grid.origin,
             data.grid.range);

@@ -94,7 +94,8 @@ void tidy_tangents(std::vector<float> &values)
     for (size_t i = 0; i + 4 <= values.size(); i += 4) {
         float *v = &values[i];
         const double x = v[0], y = v[1], z = v[2];
-        const double length = std::sqrt(x * x + y * y + z * z);
+        const double size = std::sqrt(x * x + y * y + z * z);
+        const double length = std::isfinite(size) ? size : 0;
         v[0] = length > 0 ? static_cast<float>(x / length) : 1.0f;
         v[1] = length > 0 ? static_cast<float>(y / length) : 0.0f;
         v[2] = length > 0 ? static_cast<float>(z / length) : 0.0f;

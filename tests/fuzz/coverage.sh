@@ -11,7 +11,7 @@ build=$1
 profiles=$build/profiles
 rm -rf "$profiles"
 mkdir -p "$profiles"
-objects=
+objects="$build/unit"
 
 for program in "$build"/fuzz/*; do
     name=$(basename "$program")
@@ -23,7 +23,8 @@ for program in "$build"/fuzz/*; do
     case $name in
     dec_* | tool_*) set -- "$@" tests/golden ;;
     esac
-    LLVM_PROFILE_FILE=$profiles/$name.raw "$program" -q "$@" >/dev/null
+    LLVM_PROFILE_FILE=$profiles/$name.raw "$program" -q "$@" \
+        >/dev/null 2>&1 || echo "$name: a file fails"
     objects="$objects -object $program"
 done
 table() {
@@ -36,7 +37,6 @@ table() {
 echo "== the targets alone"
 table fuzz "$profiles/*.raw"
 LLVM_PROFILE_FILE=$profiles/unit.raw "$build/unit" >/dev/null
-objects="$objects -object $build/unit"
 echo "== with the unit tests"
 table all "$profiles/*.raw"
 # shellcheck disable=SC2086

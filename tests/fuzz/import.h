@@ -15,7 +15,7 @@
  * other formats and read again. */
 void fuzz_import(const uint8_t *data, size_t size, asset_format format);
 
-/* Indices in range, text without control characters, attributes finite. */
+/* Indices in range, text without control characters. */
 void fuzz_asset_sound(const asset *mesh);
 void fuzz_error_sound(const asset_error *error);
 

@@ -8,12 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <zlib.h>
+
 #include "format/cursor.h"
 #include "format/layout.h"
 #include "format/scene.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/pieces.h"
-#include "tools/pack.h"
 
 enum { SPARE = 64, MAX_PARTS = 64, MAX_DOCUMENT = 1 << 16 };
 
@@ -106,7 +107,7 @@ static bool part_of(const piece *p, uint64_t *number, piece *bytes)
     return p->type == PMESH_CHUNK_PART && !in.overrun;
 }
 
-/* All bytes of a part, with room for `spare` more; its chunks are dropped but
+/* All bytes of a part, with room for `spare` more behind; its chunks are dropped but
  * for the first, whose place is *at. */
 static uint8_t *gather(pieces *p, uint32_t part, size_t spare, size_t *size,
                        uint32_t *at)
@@ -135,22 +136,19 @@ static uint8_t *gather(pieces *p, uint32_t part, size_t spare, size_t *size,
     return all;
 }
 
-/* The document as plain text, changed. */
-static size_t change_document(scene *s, uint8_t **data, size_t size)
+/* The document as plain text, changed; *data has room for MAX_DOCUMENT. */
+static size_t change_document(scene *s, uint8_t *data, size_t size)
 {
-    asset_bytes text = { 0 };
-    if (s->head.document_form == PMESH_DOCUMENT_ZLIB &&
-        unpack_zlib(*data, size, MAX_DOCUMENT, &text)) {
-        uint8_t *grown = realloc(*data, text.size + SPARE + 8);
-        if (grown) {
-            *data = grown;
-            size = text.size;
-            memcpy(grown, text.data, size);
-            s->head.document_form = PMESH_DOCUMENT_PLAIN;
-        }
+    uint8_t *text = calloc(MAX_DOCUMENT, 1);
+    uLongf length = MAX_DOCUMENT;
+    if (text && s->head.document_form == PMESH_DOCUMENT_ZLIB &&
+        uncompress(text, &length, data, (uLong)size) == Z_OK) {
+        size = (size_t)length;
+        memcpy(data, text, size);
+        s->head.document_form = PMESH_DOCUMENT_PLAIN;
     }
-    asset_bytes_free(&text);
-    return LLVMFuzzerMutate(*data, size, size + SPARE);
+    free(text);
+    return LLVMFuzzerMutate(data, size, size + SPARE);
 }
 
 /* Puts the part's new bytes and the header that tells their size in place;
@@ -184,9 +182,9 @@ static uint8_t *change_part(pieces *p, fuzz_dice *dice, size_t max_size)
         const uint32_t part = fuzz_draw(dice, s->head.mesh_count + 1);
         uint32_t at;
         size_t size;
-        data = gather(p, part, max_size, &size, &at);
+        data = gather(p, part, max_size + MAX_DOCUMENT + SPARE, &size, &at);
         if (data && part == 0)
-            s->head.document_size = size = change_document(s, &data, size);
+            s->head.document_size = size = change_document(s, data, size);
         else if (data)
             s->meshes[part - 1].size = size = LLVMFuzzerCustomMutator(
                 data, size, size + SPARE, fuzz_draw(dice, UINT32_MAX));

@@ -52,7 +52,7 @@ done
 
 "$PMESH" sample --faces 4000 -o "$tmp/sample.ply" >/dev/null
 sample shell.obj 150
-for ending in obj ply stl off gltf glb; do
+for ending in obj ply stl off gltf glb drc; do
     sample "tiny.$ending" 30
     seed "imp_$ending" "$tmp/tiny.$ending"
 done
@@ -102,6 +102,29 @@ fi
 "$PMESH" guide "$tmp/tiny.obj" -o "$tmp/tiny.guide.json" >/dev/null
 seed guide "$tmp/tiny.guide.json"
 n=0
+while read -r line; do
+    n=$((n + 1))
+    echo "$line" | sed 's/  /\n\n/; s/ ; /\n/g; :again; s/^\([^\n]*\) /\1\n/;
+        t again' >"$tmp/$n"
+    seed cli "$tmp/$n"
+done <<'.'
+bake a.obj -o c.pmesh --profile quality --json
+bake a.obj -o c.pmesh --guide s  {"pmesh_guide": 1, "locks": [{"all": true}]}
+bake a.obj -o c.pmesh --weights texture:s
+extract b.pmesh --faces 1 -o c.ply
+extract b.pmesh --ratio 50% -o - --format obj
+info b.pmesh --json
+verify b.pmesh s
+compare a.obj b.pmesh --json
+simplify a.obj -o c.obj --faces 1
+session s  load a.obj ; faces 2 ; weight 1 sphere 0 0 0 2 ; undo ; save c.ply
+stats a.obj
+plot b.pmesh -o c.svg
+guide a.obj -o c.guide.json
+plan b.pmesh --pixels 1 --distance 3
+view b.pmesh -o c.html
+sheet b.pmesh -o c.png --heat error
+.
 for text in 0 -0 1.5e300 123456789012345678901234567890 0.1e-400 nan -inf \
     2.2250738585072011e-308 9007199254740993 1e23 .5 5. 0x10; do
     n=$((n + 1))

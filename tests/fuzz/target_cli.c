@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Command lines, one argument a line: the exit code is one of ours. The
- * commands run in an empty folder of their own that holds a mesh and its bake,
- * without standard input, with short file names and small numbers: what is
- * tested is how arguments are read, not how much work they can ask for.
+ * Command lines, one argument a line: the exit code is one of ours. What comes
+ * behind an empty line is the content of a file "s": a script, a guide, a mask,
+ * a mesh. The commands run in a folder of their own that holds this, a mesh and
+ * its bake, without standard input, with short file names and small numbers:
+ * what is tested is how things are read, not how much work they can ask for.
  */
 #define _DEFAULT_SOURCE
 #include <dirent.h>
@@ -35,8 +36,8 @@ static const command commands[] = {
     { "sample", cmd_sample },     { "sheet", cmd_sheet },
 };
 
-static const char triangle[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\n"
-                               "f 1 2 3\nf 2 4 3\n";
+static const char quad[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nvt 0 0\n"
+                           "vt 1 1\nvt 1 0\nf 1/1 2/2 3/3\nf 2/2 4/1 3/3\n";
 
 /* No other folder, no server, nothing that takes long or much. */
 static bool is_harmless(const char *line)
@@ -57,13 +58,26 @@ static bool is_harmless(const char *line)
 
 /* ---- the folder --------------------------------------------------------- */
 
-static int enter(void)
+/* What the file "s" holds. */
+typedef struct content {
+    const char *data;
+    size_t size;
+} content;
+
+static void put_file(const char *name, content c)
+{
+    FILE *out = fopen(name, "w");
+    FUZZ_CHECK(out && fwrite(c.data, 1, c.size, out) == c.size &&
+               fclose(out) == 0);
+}
+
+static int enter(content s)
 {
     char name[] = "/tmp/pmesh-fuzz-XXXXXX";
     const int home = open(".", O_RDONLY);
     FUZZ_CHECK(home >= 0 && mkdtemp(name) && chdir(name) == 0);
-    FILE *mesh = fopen("a.obj", "w");
-    FUZZ_CHECK(mesh && fputs(triangle, mesh) >= 0 && fclose(mesh) == 0);
+    put_file("a.obj", (content){ quad, sizeof quad - 1 });
+    put_file("s", s);
     char word[][8] = { "bake", "a.obj", "-o", "b.pmesh", "-q" };
     char *bake[] = { word[0], word[1], word[2], word[3], word[4], NULL };
     FUZZ_CHECK(cmd_bake(5, bake) == CMD_DONE);
@@ -114,14 +128,14 @@ static void restore(int fd, int kept)
     close(kept);
 }
 
-static int run(const command *c, int argc, char **argv)
+static int run(const command *c, int argc, char **argv, content s)
 {
     fflush(stdout);
     fflush(stderr);
     const int in = redirect(STDIN_FILENO, "/dev/null", O_RDONLY);
     const int out = redirect(STDOUT_FILENO, "/dev/null", O_WRONLY);
     const int err = redirect(STDERR_FILENO, "/dev/null", O_WRONLY);
-    const int home = enter();
+    const int home = enter(s);
     const int code = c->run(argc, argv);
     leave(home);
     fflush(stdout);
@@ -140,25 +154,37 @@ static const command *find(const char *name)
     return NULL;
 }
 
+/* Cuts the lines before the empty one into arguments; returns the rest. */
+static content cut(char *text, size_t size, int *argc, char **argv)
+{
+    char *next = text, *end = text + size;
+    *argc = 0;
+    while (next < end && *next != '\n' && *argc < ARGUMENTS) {
+        char *stop = memchr(next, '\n', (size_t)(end - next));
+        argv[(*argc)++] = next;
+        next = stop ? stop + 1 : end;
+        if (stop)
+            *stop = '\0';
+    }
+    argv[*argc] = NULL;
+    next += next < end;
+    return (content){ next, (size_t)(end - next) };
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     char *text = fuzz_room(size + 1), *argv[ARGUMENTS + 1];
-    int argc = 0;
-    bool harmless = true;
+    int argc;
 
     memcpy(text, data, size);
     text[size] = '\0';
-    for (char *next = text; next && argc < ARGUMENTS;) {
-        argv[argc] = next;
-        next = strchr(next, '\n');
-        if (next)
-            *next++ = '\0';
-        harmless = harmless && is_harmless(argv[argc++]);
-    }
-    argv[argc] = NULL;
-    const command *c = find(argv[0]);
-    if (c && harmless) {
-        const int code = run(c, argc, argv);
+    const content s = cut(text, size, &argc, argv);
+    const command *c = argc > 0 ? find(argv[0]) : NULL;
+    bool harmless = c && (c->run != cmd_session || is_harmless(s.data));
+    for (int i = 0; i < argc; i++)
+        harmless = harmless && is_harmless(argv[i]);
+    if (harmless) {
+        const int code = run(c, argc, argv, s);
         FUZZ_CHECK(code >= CMD_DONE && code <= CMD_BOUND);
     }
     free(text);

@@ -556,5 +556,5 @@ TEST(scene_limit_is_for_all_meshes_together)
             return;
         }
     }
-    CHECK(!"no limit is enough");
+    test_fail(__FILE__, __LINE__, "no limit is enough");
 }
