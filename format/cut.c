@@ -216,15 +216,15 @@ static void look_up_wings(cutter *s, const pmesh_codec *c,
     pmesh_cut_weights *w = s->weights;
     const uint32_t n = s->n;
     const uint32_t ghost = PMESH_GHOST;
-    uint32_t before = s->open ? ghost : c->state[ring->vertex[n - 1]];
-    uint32_t here = c->state[ring->vertex[0]];
+    uint32_t before = s->open ? ghost : pmesh_state(c, ring->vertex[n - 1]);
+    uint32_t here = pmesh_state(c, ring->vertex[0]);
     const uint32_t after = s->open ? ghost : here;
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t many = c->near[ring->vertex[i]].degree;
         const uint32_t degree =
             many < PMESH_CUT_DEGREES ? many : PMESH_CUT_DEGREES - 1;
         const uint32_t behind =
-            i + 1 < n ? c->state[ring->vertex[i + 1]] : after;
+            i + 1 < n ? pmesh_state(c, ring->vertex[i + 1]) : after;
         s->degree[0][i] = &w->degree[0][degree];
         s->degree[1][i] = &w->degree[1][degree];
         s->state[0][i] = &w->state[0][before][here][behind];

@@ -20,34 +20,41 @@ static pmesh_status corrupt(pmesh_codec *c, const char *rule)
     return PMESH_E_CORRUPT;
 }
 
-static uint32_t queue_vertex(pmesh_codec *c, uint32_t x, uint32_t count)
+/* The first vertices of `order` wait for their visit, or had it. */
+static void queue_vertex(pmesh_codec *c, uint32_t x)
 {
     if (c->state[x] != PMESH_UNVISITED)
-        return count;
-    c->state[x] = PMESH_KEPT;
-    c->order[count] = x;
-    return count + 1;
+        return;
+    c->state[x] = PMESH_UNVISITED | PMESH_QUEUED;
+    c->order[c->level_queued++] = x;
 }
 
-/* The members of a ring, of any size. */
-static uint32_t queue_ring(pmesh_codec *c, uint32_t start, uint32_t count)
+static void queue_ring(pmesh_codec *c, const pmesh_ring *ring)
+{
+    for (uint32_t i = 0; i < ring->count; i++)
+        queue_vertex(c, ring->vertex[i]);
+}
+
+/* The members of v's rings, of any size. */
+static void queue_rings(pmesh_codec *c, uint32_t v)
 {
     const pmesh_mesh *m = &c->mesh;
-    uint32_t h = start, last;
-    do {
-        count = queue_vertex(c, m->vertex[pmesh_next(h)], count);
-        last = pmesh_prev(h);
-        h = m->twin[last];
-    } while (h != PMESH_NONE && h != start);
-    return h == PMESH_NONE ? queue_vertex(c, m->vertex[last], count) : count;
+    uint32_t start = m->first[v];
+    for (uint32_t h = start; h != PMESH_NONE;
+         h = pmesh_corner_next(m, &start, h)) {
+        queue_vertex(c, m->vertex[pmesh_next(h)]);
+        if (pmesh_turn_left(m, h) == PMESH_NONE)
+            queue_vertex(c, m->vertex[pmesh_prev(h)]);
+    }
 }
 
 /* Of a vertex that the visit comes to later on: its first face, where known. */
-static void prefetch_visit(const pmesh_codec *c, uint32_t place, uint32_t end)
+static void prefetch_visit(const pmesh_codec *c)
 {
     enum { AHEAD = 6, FAR_AHEAD = 12 };
     const pmesh_mesh *m = &c->mesh;
-    if (place + FAR_AHEAD >= end)
+    const uint32_t place = c->level_next;
+    if (place + FAR_AHEAD >= c->level_queued)
         return;
     const uint32_t h = m->first[c->order[place + AHEAD]];
     pmesh_prefetch(&m->first[c->order[place + FAR_AHEAD]]);
@@ -55,30 +62,30 @@ static void prefetch_visit(const pmesh_codec *c, uint32_t place, uint32_t end)
     pmesh_prefetch(&m->vertex[h]);
 }
 
-/* Breadth first over the rings, from vertex 0 and again from the lowest vertex
- * not seen. */
 void pmesh_level_begin(pmesh_codec *c)
 {
-    const pmesh_mesh *m = &c->mesh;
-    const uint32_t n = m->vertex_count;
-    uint32_t count = 0, next = 0;
-
-    memset(c->state, PMESH_UNVISITED, n);
-    for (uint32_t seed = 0; seed < n; seed++) {
-        if (c->state[seed] != PMESH_UNVISITED)
-            continue;
-        c->state[seed] = PMESH_KEPT;
-        c->order[count++] = seed;
-        while (next < count) {
-            prefetch_visit(c, next, count);
-            for (uint32_t fan = m->first[c->order[next++]]; fan != PMESH_NONE;
-                 fan = m->fan ? m->fan[fan] : PMESH_NONE)
-                count = queue_ring(c, fan, count);
-        }
-    }
+    const uint32_t n = c->mesh.vertex_count;
     memset(c->state, PMESH_UNVISITED, n);
     c->level_vertex_count = n;
-    c->level_next = 0;
+    c->level_seed = c->level_queued = c->level_next = 0;
+}
+
+/* Breadth first over the rings, from vertex 0 and again from the lowest vertex
+ * not seen; PMESH_NONE behind the last. A split changes the ring of no vertex
+ * that is yet to be visited but for newborn members and their place in it: the
+ * order is that of the mesh before the level. */
+static uint32_t next_vertex(pmesh_codec *c)
+{
+    if (c->level_next == c->level_queued) {
+        while (c->level_seed < c->level_vertex_count &&
+               c->state[c->level_seed] != PMESH_UNVISITED)
+            c->level_seed++;
+        if (c->level_seed == c->level_vertex_count)
+            return PMESH_NONE;
+        queue_vertex(c, c->level_seed);
+    }
+    prefetch_visit(c);
+    return c->order[c->level_next++];
 }
 
 static uint32_t at_most(uint32_t value, uint32_t limit)
@@ -93,7 +100,7 @@ static uint32_t flag_context(const pmesh_codec *c, const pmesh_ring *ring,
     uint32_t seen[PMESH_GHOST + 1] = { 0 }, size = 0;
     for (uint32_t k = 0; k < rings; k++) {
         for (uint32_t i = 0; i < ring[k].count; i++)
-            seen[c->state[ring[k].vertex[i]]]++;
+            seen[pmesh_state(c, ring[k].vertex[i])]++;
         size += ring[k].count + ring[k].open;
     }
     const uint32_t valence = size < 4 ? 0 : at_most(size - 3, 7);
@@ -218,8 +225,12 @@ static pmesh_status visit(pmesh_codec *c, pmesh_coder *coder,
                           const pmesh_oracle *oracle, uint32_t v)
 {
     pmesh_ring ring;
-    return pmesh_ring_gather(&c->mesh, v, &ring) &&
-                   code_flag(c, coder, oracle, v, &ring, 1)
+    if (!pmesh_ring_gather(&c->mesh, v, &ring)) {
+        queue_rings(c, v);
+        return PMESH_OK;
+    }
+    queue_ring(c, &ring);
+    return code_flag(c, coder, oracle, v, &ring, 1)
                ? split(c, coder, oracle, v, &ring)
                : PMESH_OK;
 }
@@ -228,6 +239,7 @@ static pmesh_status visit_joined(pmesh_codec *c, pmesh_coder *coder,
                                  const pmesh_oracle *oracle, uint32_t v)
 {
     pmesh_fans fans;
+    queue_rings(c, v);
     return pmesh_fans_gather(&c->mesh, v, &fans) &&
                    code_flag(c, coder, oracle, v, fans.ring, fans.count)
                ? pmesh_join_split(c, coder, oracle, v, &fans)
@@ -240,10 +252,9 @@ static pmesh_status code_connectivity(pmesh_codec *c, pmesh_coder *coder,
 {
     pmesh_status status = PMESH_OK;
     while (c->block.vertex_count < split_count && status == PMESH_OK) {
-        if (c->level_next == c->level_vertex_count)
+        const uint32_t v = next_vertex(c);
+        if (v == PMESH_NONE)
             return corrupt(c, "SPEC 6.3: more splits than vertices");
-        prefetch_visit(c, c->level_next, c->level_vertex_count);
-        const uint32_t v = c->order[c->level_next++];
         c->state[v] = PMESH_KEPT;
         status = c->sizes.joined ? visit_joined(c, coder, oracle, v)
                                  : visit(c, coder, oracle, v);
