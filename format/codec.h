@@ -29,8 +29,7 @@ typedef enum pmesh_visit {
     PMESH_PARENT = 2,  /* visited, has split */
     PMESH_NEWBORN = 3, /* made by a split of this level */
     PMESH_GHOST = 4,   /* what lies across a boundary */
-    PMESH_QUEUED = 8   /* beside PMESH_UNVISITED: its place in the order is known
-                          */
+    PMESH_QUEUED = 8   /* beside PMESH_UNVISITED: it is in the order */
 } pmesh_visit;
 
 typedef struct pmesh_fans pmesh_fans; /* see join.h */

@@ -11,6 +11,7 @@
 #include "format/predict.h"
 #include "format/rank.h"
 #include "format/residual.h"
+#include "format/star.h"
 #include "format/value.h"
 #include "format/wedge.h"
 
@@ -124,20 +125,21 @@ static uint32_t member(const pmesh_ring *ring, uint32_t i)
     return ring->vertex[i < ring->count ? i : i - ring->count];
 }
 
-/* u goes to the mean of its ring: of the members that the cut gives it, and
- * v. */
+/* The mean of the members that the cut gives u, and v: u's ring. */
 static void place_provisionally(pmesh_codec *c, uint32_t u, uint32_t v,
-                                const pmesh_ring *ring, pmesh_cut cut)
+                                const pmesh_ring *ring, uint32_t first,
+                                uint32_t count)
 {
-    int32_t(*position)[3] = c->mesh.position;
-    uint32_t first;
-    const uint32_t count = handed_over(ring, cut, &first);
-    int64_t sum[3] = { position[v][0], position[v][1], position[v][2] };
+    const int32_t(*position)[3] = (const int32_t(*)[3])c->mesh.position;
+    quads sum = quads_triple(position[v]);
     for (uint32_t i = first; i < first + count; i++)
-        for (int k = 0; k < 3; k++)
-            sum[k] += position[member(ring, i)][k];
+        sum = quads_add(sum, quads_triple(position[member(ring, i)]));
+    int32_t sums[QUADS];
+    quads_store(sums, sum);
+    pmesh_near_store(&c->near[u], sum);
+    c->near[u].degree = count + 1;
     for (int k = 0; k < 3; k++)
-        position[u][k] = (int32_t)(sum[k] / (count + 1));
+        c->mesh.position[u][k] = pmesh_share(sums[k], count + 1);
 }
 
 /* Members that are no wings change their neighbour v for u; wings gain u. */
@@ -145,28 +147,26 @@ static void count_neighbours(pmesh_codec *c, uint32_t v, uint32_t u,
                              const pmesh_ring *ring, pmesh_cut cut)
 {
     const int32_t(*position)[3] = (const int32_t(*)[3])c->mesh.position;
-    const quads at_u = quads_triple(position[u]),
-                at_v = quads_triple(position[v]);
-    quads near_u = at_v, near_v = quads_add(pmesh_near_load(&c->near[v]), at_u);
     uint32_t first;
     const uint32_t count = handed_over(ring, cut, &first);
+    place_provisionally(c, u, v, ring, first, count);
+    const quads at_u = quads_triple(position[u]);
+    const quads instead = quads_sub(at_u, quads_triple(position[v]));
+    quads near_v = quads_add(pmesh_near_load(&c->near[v]), at_u);
     for (uint32_t i = first; i < first + count; i++) {
         const uint32_t x = member(ring, i);
         const bool wing = (i == first && cut.first != PMESH_NONE) ||
                           (i == first + count - 1 && cut.end != PMESH_NONE);
-        const quads at_x = quads_triple(position[x]);
-        quads near_x = quads_add(pmesh_near_load(&c->near[x]), at_u);
-        near_u = quads_add(near_u, at_x);
-        if (!wing) {
-            near_x = quads_sub(near_x, at_v);
-            near_v = quads_sub(near_v, at_x);
+        const quads near_x = pmesh_near_load(&c->near[x]);
+        if (wing) {
+            pmesh_near_store(&c->near[x], quads_add(near_x, at_u));
+            c->near[x].degree++;
+            continue;
         }
-        pmesh_near_store(&c->near[x], near_x);
-        c->near[x].degree += wing;
+        pmesh_near_store(&c->near[x], quads_add(near_x, instead));
+        near_v = quads_sub(near_v, quads_triple(position[x]));
     }
-    pmesh_near_store(&c->near[u], near_u);
     pmesh_near_store(&c->near[v], near_v);
-    c->near[u].degree = count + 1;
     c->near[v].degree = ring->count - count + 1 + (cut.first != PMESH_NONE) +
                         (cut.end != PMESH_NONE);
 }
@@ -191,7 +191,6 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
     c->child_face[index] = m->face_count;
     if (c->sizes.moves)
         memcpy(c->unsplit[index], m->position[v], sizeof *c->unsplit);
-    place_provisionally(c, u, v, ring, cut);
     count_neighbours(c, v, u, ring, cut);
     pmesh_mesh_split(m, v, ring, cut);
     c->state[v] = PMESH_PARENT;
@@ -289,13 +288,20 @@ static const pmesh_ring *ring_of(const pmesh_site *site)
     return site ? &site->ring : NULL;
 }
 
-static void keep_sites(pmesh_codec *c)
+/* Connectivity is complete now: what is known of every child's ring, and a
+ * better guess where it will be. */
+static void guess_positions(pmesh_codec *c)
 {
     const uint32_t begin = c->block.vertex;
     for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        pmesh_site site;
-        pmesh_site_keep(find_site(c, u, c->mesh.parent[u], &site),
-                        kept_site(c, u));
+        pmesh_site space;
+        const pmesh_site *site = find_site(c, u, c->mesh.parent[u], &space);
+        pmesh_site_keep(site, kept_site(c, u));
+        if (!site)
+            continue;
+        int32_t position[3];
+        pmesh_guess(c, u, &site->ring, position);
+        pmesh_place(c, u, &site->ring, position);
     }
 }
 
@@ -314,24 +320,6 @@ static const pmesh_site *take_site(const pmesh_codec *c, uint32_t u,
     return pmesh_site_kept(kept_site(c, u), site)
                ? site
                : find_site(c, u, c->mesh.parent[u], site);
-}
-
-/* Connectivity is complete now: a better guess for every provisional one. */
-static void sweep(pmesh_codec *c)
-{
-    pmesh_mesh *m = &c->mesh;
-    const uint32_t begin = c->block.vertex;
-    for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        const uint32_t v = m->parent[u];
-        pmesh_site space;
-        const pmesh_site *site = take_site(c, u, &space);
-        pmesh_prediction p;
-        int32_t position[3];
-        pmesh_predict(c, child_kind(c), u, site, m->position[v], begin, &p);
-        for (int k = 0; k < 3; k++)
-            position[k] = (int32_t)(p.position[k] >> 4);
-        pmesh_place(c, u, ring_of(site), position);
-    }
 }
 
 /* How far, in 1/16 steps, u lies above or below its parent: what the surface
@@ -424,8 +412,7 @@ pmesh_status pmesh_block_code(pmesh_codec *c, pmesh_coder *coder,
     if (status != PMESH_OK)
         return status;
     count_part(c, coder, 0, &written);
-    keep_sites(c);
-    sweep(c);
+    guess_positions(c);
     status = code_positions(c, coder, oracle);
     if (status != PMESH_OK)
         return status;
