@@ -7,14 +7,23 @@
 #include "format/alloc.h"
 
 /* A squared distance so many times the usual one makes dearer, by its excess
- * to the power of 3/2. Half of that keeps fewer outliers in and costs 1 % more
- * root mean square; twice that hardly catches any. */
-#define MAX_EXCESS  4.0
-#define USUAL_OVER  256.0 /* contractions */
+ * to the power of 3/2. Less keeps fewer outliers in and costs 1 % more root
+ * mean square; twice that hardly catches any. Places of the input are farther
+ * off as a rule. */
+#define MAX_EXCESS         3.0
+#define MAX_EXCESS_AT_ENDS 4.0
+
+/* Contractions. Among the last hundred what is usual grows fast: a mean over
+ * 256 lags behind, and costs 3 % there. */
+#define USUAL_OVER  32.0
 #define LEAST_USUAL 1e-10 /* squared: nobody sees less */
 
-/* Each blemish makes so many times dearer. */
+/* Each blemish makes so many times dearer; but where the whole star is smaller
+ * than so many usual distances, squared, nobody sees it. Tiny handles and
+ * tunnels, which fold as they shrink, would else keep their faces while what is
+ * larger loses its own. */
 #define BLEMISH          16.0
+#define MIN_REACH        49.0
 #define MIN_TURN_COSINE  0.7 /* of one contraction: 46 degrees */
 #define MIN_DRIFT_COSINE 0.0 /* of all so far */
 #define MIN_SHAPE                                                              \
@@ -26,11 +35,13 @@
 /* Stars of more faces are not searched for folds. */
 #define MAX_STAR 32
 
-pmesh_status enc_lod_delay_create(const enc_lod *lod, enc_lod_delay *out)
+pmesh_status enc_lod_delay_create(const enc_lod *lod, bool at_ends,
+                                  enc_lod_delay *out)
 {
     const pmesh_allocator *a = &lod->allocator;
 
-    *out = (enc_lod_delay){ .lod = lod };
+    *out = (enc_lod_delay){ .lod = lod,
+                            .most = at_ends ? MAX_EXCESS_AT_ENDS : MAX_EXCESS };
     out->normal = pmesh_alloc_zero(a, lod->face_count, sizeof *out->normal);
     out->left = pmesh_alloc_zero(a, lod->vertex_count, sizeof *out->left);
     if (!out->normal || !out->left) {
@@ -84,6 +95,7 @@ typedef struct enc_lod_star {
     uint32_t faces;
     enc_lod_spoke spoke[MAX_STAR]; /* as many of the faces as fit */
     double peak; /* squared distance of the place to the planes of before */
+    double reach; /* squared: from the place to the farthest outer vertex */
     double turn, drift; /* least cosines: against before, against the input */
     double shape, old_shape; /* worst heights by longest sides */
 } enc_lod_star;
@@ -111,8 +123,12 @@ static void add_face(const enc_lod_delay *d, enc_lod_star *s, uint32_t c,
     const double first[3] = { (double)d->normal[c / 3][0],
                               (double)d->normal[c / 3][1],
                               (double)d->normal[c / 3][2] };
-    double n[3], old[3];
+    double n[3], old[3], way[2][3];
 
+    difference(p, s->place, way[0]);
+    difference(q, s->place, way[1]);
+    s->reach = fmax(s->reach,
+                    fmax(dot(way[0], way[0]), dot(way[1], way[1])));
     enc_lod_normal(lod, c, s->place, n);
     enc_lod_normal(lod, c, from, old);
     const double size = sqrt(dot(n, n)), old_size = sqrt(dot(old, old));
@@ -221,8 +237,10 @@ static double to_triangle(const double p[3], const double a[3],
                 fmin(to_segment(p, b, c), to_segment(p, c, a)));
 }
 
+/* Or something that is `enough` or less: nobody wants to know, then. */
 static double to_star(const enc_lod *lod, uint32_t v, uint32_t other,
-                      const double place[3], const double p[3], double least)
+                      const double place[3], const double p[3], double enough,
+                      double least)
 {
     uint32_t c = lod->first_corner[v];
 
@@ -232,6 +250,8 @@ static double to_star(const enc_lod *lod, uint32_t v, uint32_t other,
         if (a != other && b != other)
             least = fmin(least, to_triangle(p, place, lod->position[a],
                                             lod->position[b]));
+        if (least <= enough)
+            return least;
     } while ((c = lod->corner_next[c]) != lod->first_corner[v]);
     return least;
 }
@@ -251,9 +271,10 @@ static void leave(enc_lod_delay *d, uint32_t u, uint32_t v,
         for (uint32_t i = 0; i <= l->count; i++) {
             const double *p =
                 i < l->count ? l->place[i] : lod->position[end[side]];
-            double distance = to_star(lod, u, v, place, p, INFINITY);
-            distance = to_star(lod, v, u, place, p, distance);
             uint32_t at = d->next.count;
+            const double enough = at == ENC_LOD_LEFT ? far[at - 1] : 0;
+            double distance = to_star(lod, u, v, place, p, enough, INFINITY);
+            distance = to_star(lod, v, u, place, p, enough, distance);
             if (!(distance > 0 && distance < INFINITY))
                 continue;
             while (at > 0 && far[at - 1] < distance) {
@@ -289,8 +310,8 @@ double enc_lod_delay_factor(enc_lod_delay *d, uint32_t u, uint32_t v,
     d->least_cosine = star.drift;
     d->far = star.peak;
     leave(d, u, v, place);
-    double factor = blemishes(&star);
-    const double limit = MAX_EXCESS * fmax(d->usual, LEAST_USUAL);
+    double factor = star.reach < MIN_REACH * d->usual ? 1 : blemishes(&star);
+    const double limit = d->most * fmax(d->usual, LEAST_USUAL);
     if (d->usual > 0 && d->far > limit)
         factor *= d->far / limit * sqrt(d->far / limit);
     return factor;

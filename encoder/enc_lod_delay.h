@@ -26,6 +26,7 @@ typedef struct enc_lod_delay {
     float (*normal)[3]; /* per face: in the input, unit length, or 0 */
     enc_lod_left *left; /* per vertex: former places of vertices near it */
     double usual;       /* mean over recent contractions of `far` */
+    double most;        /* `far` may be so many times that */
 
     /* Of the pair that was looked at last. */
     double far;          /* squared: the largest distance nearby */
@@ -33,7 +34,9 @@ typedef struct enc_lod_delay {
     enc_lod_left next;
 } enc_lod_delay;
 
-pmesh_status enc_lod_delay_create(const enc_lod *lod, enc_lod_delay *out);
+/* at_ends: vertices go nowhere but to the other end. */
+pmesh_status enc_lod_delay_create(const enc_lod *lod, bool at_ends,
+                                  enc_lod_delay *out);
 void enc_lod_delay_destroy(enc_lod_delay *d);
 
 /* How much dearer the contraction of u and v to `place` is to be: at least 1.

@@ -51,15 +51,22 @@ static void sum_group(const enc_lod_wedges *ws, const enc_lod_edge *e,
     }
 }
 
+void enc_lod_sum_plain(const enc_lod_wedges *ws, const enc_lod_edge *e,
+                       enc_quadric *total)
+{
+    const double back[3] = { -e->half[0], -e->half[1], -e->half[2] };
+
+    *total = (enc_quadric){ .c = 0 };
+    enc_quadric_add(total, &ws->quadric[ws->lod->lone[e->kept]], back);
+    enc_quadric_add(total, &ws->quadric[ws->lod->lone[e->gone]], e->half);
+}
+
 void enc_lod_sum(const enc_lod_wedges *ws, const enc_lod_edge *e,
                  enc_quadric *total)
 {
     *total = (enc_quadric){ .c = 0 };
-    if (ws->active == 0 && ws->count == 2 && ws->kept_count == 1 &&
-        ws->fate[ws->list[1]] == ws->list[0]) { /* nearly all */
-        const double back[3] = { -e->half[0], -e->half[1], -e->half[2] };
-        enc_quadric_add(total, &ws->quadric[ws->list[0]], back);
-        enc_quadric_add(total, &ws->quadric[ws->list[1]], e->half);
+    if (enc_lod_is_plain(ws, e->gone, e->kept)) {
+        enc_lod_sum_plain(ws, e, total);
         return;
     }
     for (uint32_t w = 0; w < ws->count; w++) {

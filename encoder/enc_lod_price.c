@@ -230,7 +230,11 @@ static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
     double weight = 0;
     enc_quadric memory;
 
-    enc_lod_gather(&p->wedges, gone, kept);
+    const bool plain = !full && p->placement != PMESH_PLACE_ENDPOINT &&
+                       enc_lod_is_plain(&p->wedges, gone, kept);
+
+    if (!plain)
+        enc_lod_gather(&p->wedges, gone, kept);
     sum_memory(p, &e, &memory);
     if (p->placement == PMESH_PLACE_ENDPOINT) {
         offer.quadric = enc_lod_onto_kept(&p->wedges, &e, p->break_seams) +
@@ -241,7 +245,10 @@ static enc_lod_offer make_offer(enc_lod_pricer *p, uint32_t gone, uint32_t kept,
             enc_lod_choose(&p->wedges);
     } else {
         enc_quadric total;
-        enc_lod_sum(&p->wedges, &e, &total);
+        if (plain)
+            enc_lod_sum_plain(&p->wedges, &e, &total);
+        else
+            enc_lod_sum(&p->wedges, &e, &total);
         add_recalled(p, &memory, &total);
         const bool placed = find_place(p, &e, &total, x);
         offer.quadric = placed ? enc_quadric_value(&total, x) : INFINITY;

@@ -85,6 +85,17 @@ void enc_lod_gather(enc_lod_wedges *ws, uint32_t gone, uint32_t kept);
 void enc_lod_sum(const enc_lod_wedges *ws, const enc_lod_edge *e,
                  enc_quadric *total);
 
+/* True if the two have a wedge each, which have no values in the quadrics:
+ * nearly all have, and then this is the same without gathering. */
+static inline bool enc_lod_is_plain(const enc_lod_wedges *ws, uint32_t gone,
+                                    uint32_t kept)
+{
+    return ws->active == 0 && ws->lod->lone[gone] != ENC_NONE &&
+           ws->lod->lone[kept] != ENC_NONE;
+}
+void enc_lod_sum_plain(const enc_lod_wedges *ws, const enc_lod_edge *e,
+                       enc_quadric *total);
+
 /* The weight of all these planes. */
 double enc_lod_weight(const enc_lod_wedges *ws);
 

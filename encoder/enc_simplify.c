@@ -40,7 +40,7 @@ pmesh_simplify_options pmesh_simplify_options_default(void)
         .placement = PMESH_PLACE_OPTIMAL,
         .metric = PMESH_MEMORYLESS,
         .cost = PMESH_COST_QUADRIC,
-        .memory = 0.5,
+        .memory = 0.35,
         .boundary = 10,
         .seam = 3,
         .turn_cosine = -1,
@@ -314,7 +314,9 @@ static pmesh_status prepare(enc_lod_run *run, const pmesh_allocator *a)
             enc_lod_sum_normals(&run->lod, v);
         }
     price_all(run);
-    return enc_lod_delay_create(&run->lod, &run->delay);
+    return enc_lod_delay_create(&run->lod,
+                                run->pricer.placement == PMESH_PLACE_ENDPOINT,
+                                &run->delay);
 }
 
 static void release(enc_lod_run *run, const pmesh_allocator *a)

@@ -158,7 +158,7 @@ typedef struct pmesh_simplify_options {
     pmesh_place placement; /* default PMESH_PLACE_OPTIMAL */
     pmesh_metric metric;   /* default PMESH_MEMORYLESS */
     double memory; /* with PMESH_MEMORYLESS: how much the planes of the original
-                      count beside those of the current surface; default 0.5.
+                      count beside those of the current surface; default 0.35.
                       More lowers the largest error and thin parts last, less
                       lowers the mean at fine levels; 0: as in 1998 */
     pmesh_cost cost;       /* default PMESH_COST_QUADRIC */

@@ -28,7 +28,8 @@ typedef enum pmesh_visit {
     PMESH_KEPT = 1,    /* visited, does not split */
     PMESH_PARENT = 2,  /* visited, has split */
     PMESH_NEWBORN = 3, /* made by a split of this level */
-    PMESH_GHOST = 4    /* what lies across a boundary */
+    PMESH_GHOST = 4,   /* what lies across a boundary */
+    PMESH_QUEUED = 8   /* beside PMESH_UNVISITED: it is in the order */
 } pmesh_visit;
 
 typedef struct pmesh_fans pmesh_fans; /* see join.h */
@@ -144,9 +145,12 @@ typedef struct pmesh_codec {
                                                        values, of the base too */
 
     /* Of the level. */
-    uint32_t *order; /* per vertex: the visit's order */
+    uint32_t *order; /* per vertex: the visit's order, as far as known */
     uint8_t *state;  /* per vertex: pmesh_visit */
-    uint32_t level_vertex_count, level_next;
+    uint32_t level_vertex_count;
+    uint32_t level_seed;   /* vertices below it are in the order */
+    uint32_t level_queued; /* length of the order */
+    uint32_t level_next;   /* its first that was not visited */
 
     /* Of the mesh as it is. */
     pmesh_near *near; /* per vertex */
@@ -175,6 +179,11 @@ typedef struct pmesh_codec {
     void *cut_room;         /* see cut.c */
     uint32_t *base_scratch; /* pmesh_base_scratch() numbers, for the base */
 } pmesh_codec;
+
+static inline uint8_t pmesh_state(const pmesh_codec *c, uint32_t v)
+{
+    return c->state[v] & (PMESH_QUEUED - 1);
+}
 
 /*
  * Lays the arrays out in `block` (aligned for any object, zeroed) and makes an

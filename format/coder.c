@@ -1,98 +1,108 @@
 /* SPDX-License-Identifier: MIT */
 #include "format/coder.h"
 
-#define PROBABILITY_BITS 16
-#define FAST_USES        30 /* the estimates become exponential averages with */
-#define PRIOR_USES       12 /* a probability from a table counts as many bits */
-#define SLOW_USES        127 /* these lengths; before, they are plain averages */
+enum { PRIOR_USES = 12 }; /* a probability from a table counts as many bits */
 
-/* 2 / (2 uses + 3) in 1/32768: the step of an average towards a new value. */
-#define RATE_BITS 15
-#define R(n)      (65536 / (2 * (n) + 3))
+#define R(n)      (16384 / (2 * (n) + 3))
 #define R4(n)     R(n), R((n) + 1), R((n) + 2), R((n) + 3)
 #define R32(n)                                                                 \
     R4(n), R4((n) + 4), R4((n) + 8), R4((n) + 12), R4((n) + 16), R4((n) + 20), \
         R4((n) + 24), R4((n) + 28)
 
-static const uint16_t rate[SLOW_USES + 1] = {
+/* With the last entry estimates become exponential averages; before, they are
+ * plain ones. */
+const uint16_t pmesh_bit_rate[PMESH_BIT_MOST_USES + 1] = {
     R32(0),
     R32(32),
     R32(64),
     R32(96),
 };
 
-/* Keeps a bit's cost below about 11 bits and above 1/1400. */
-#define PROBABILITY_MIN 32u
-#define PROBABILITY_MAX (65536u - PROBABILITY_MIN)
-
 void pmesh_bits_init(pmesh_bit *bits, size_t count)
 {
     for (size_t i = 0; i < count; i++)
-        bits[i] = (pmesh_bit)PMESH_BIT_INIT;
+        bits[i].state = (uint32_t)1 << 31;
 }
 
 void pmesh_bits_start(pmesh_bit *bits, size_t count, const uint8_t *table)
 {
     pmesh_bits_init(bits, count);
     for (size_t i = 0; i < count; i++)
-        if (table[i]) {
-            bits[i].fast = bits[i].slow = (uint16_t)(table[i] * 256 + 128);
-            bits[i].uses = PRIOR_USES;
-        }
+        if (table[i])
+            bits[i].state = (uint32_t)table[i] << 24 | 1u << 23 | PRIOR_USES;
 }
 
 void pmesh_coder_encode(pmesh_coder *c, pmesh_writer *out)
 {
-    *c = (pmesh_coder){
-        .encoding = true, .range = UINT32_MAX, .out = out, .pending = 1
-    };
+    *c = (pmesh_coder){ .encoding = true,
+                        .range = UINT64_MAX,
+                        .out = out,
+                        .start = out->size };
+}
+
+/* The next 32 bits of the stream. */
+static uint32_t next_word(pmesh_cursor *in)
+{
+    uint32_t word = 0;
+    for (int i = 0; i < 4; i++)
+        word = word << 8 | pmesh_get_u8(in);
+    return word;
 }
 
 void pmesh_coder_decode(pmesh_coder *c, const uint8_t *data, size_t size)
 {
-    *c = (pmesh_coder){ .range = UINT32_MAX,
+    *c = (pmesh_coder){ .range = UINT64_MAX,
                         .in = pmesh_cursor_make(data, size) };
-    for (int i = 0; i < 4; i++)
-        c->code = c->code << 8 | pmesh_get_u8(&c->in);
+    c->code = (uint64_t)next_word(&c->in) << 32;
+    c->code |= next_word(&c->in);
+}
+
+/* The most significant byte first. */
+static void put_word(pmesh_writer *out, uint32_t word)
+{
+    for (int shift = 24; shift >= 0; shift -= 8)
+        pmesh_put(out, word >> shift & 0xff, 1);
 }
 
 void pmesh_coder_shift(pmesh_coder *c)
 {
-    const uint8_t carry = (uint8_t)(c->low >> 32);
-    if (carry || (uint32_t)c->low < 0xff000000u) {
-        /* `pending` counts the cache and the 0xff bytes behind it. The first
-         * cache stands for the digit before the point: always 0, left out. */
-        if (c->started)
-            pmesh_put(c->out, (uint8_t)(c->cache + carry), 1);
-        for (; c->pending > 1; c->pending--)
-            pmesh_put(c->out, (uint8_t)(0xff + carry), 1);
-        c->started = true;
-        c->pending = 0;
-        c->cache = (uint8_t)(c->low >> 24);
+    c->range <<= 32;
+    if (c->encoding) {
+        put_word(c->out, (uint32_t)(c->low >> 32));
+        c->low <<= 32;
+    } else {
+        c->code = c->code << 32 | next_word(&c->in);
     }
-    c->pending++;
-    c->low = (c->low & 0x00ffffffu) << 8;
+}
+
+/* The digits behind the point never come to 1: there is a byte to stop at, but
+ * if some did not fit. */
+void pmesh_coder_carry(pmesh_coder *c)
+{
+    size_t i = c->out->size;
+    while (i > c->start && ++c->out->data[--i] == 0)
+        ;
 }
 
 bool pmesh_coder_finish(pmesh_coder *c)
 {
-    if (!c->encoding) /* zeros left out: at most the 4 bytes of the flush */
+    if (!c->encoding) /* zeros left out: at most the 8 bytes of the flush */
         return c->in.next == c->in.end;
 
-    const size_t start = c->out->size;
-    /* Any value in [low, low + range) will do: the one with most zeros. */
-    const uint64_t high = c->low + c->range - 1;
-    uint64_t value = high;
-    for (unsigned bits = 32; bits > 0; bits--) {
-        value = high >> bits << bits;
-        if (value >= c->low)
+    /* Any value in [low, low + range) will do: one with many zeros. */
+    uint64_t value = c->low;
+    for (unsigned bits = 63; bits > 0; bits--) {
+        const uint64_t mask = ((uint64_t)1 << bits) - 1;
+        value = (c->low + mask) & ~mask;
+        if (value - c->low < c->range)
             break;
-        value = high;
+        value = c->low;
     }
-    c->low = value;
-    for (int i = 0; i < 5; i++)
-        pmesh_coder_shift(c);
-    while (c->out->size > start && c->out->data[c->out->size - 1] == 0)
+    if (value < c->low)
+        pmesh_coder_carry(c);
+    put_word(c->out, (uint32_t)(value >> 32));
+    put_word(c->out, (uint32_t)value);
+    while (c->out->size > c->start && c->out->data[c->out->size - 1] == 0)
         c->out->size--;
     return !c->out->overflow;
 }
@@ -102,80 +112,26 @@ bool pmesh_coder_finish(pmesh_coder *c)
 uint64_t pmesh_coder_spent(const pmesh_coder *c)
 {
     uint64_t part = c->range, log = 31;
-    for (; part < (UINT64_C(1) << 31); part <<= 1)
+    for (; part < (UINT64_C(1) << 63); part <<= 1)
         log--;
+    part >>= 32;
     for (int i = 0; i < 8; i++) {
         part = part * part >> 31;
         log = 2 * log + (part >> 32);
         part >>= part >> 32;
     }
-    return (c->out->size + c->pending + c->started) * 8 * 256 + 32 * 256 - log;
-}
-
-static void adapt(pmesh_bit *m, unsigned bit)
-{
-    const int32_t target = bit ? 0 : 65535;
-    const int32_t fast = rate[m->uses < FAST_USES ? m->uses : FAST_USES];
-    m->fast = (uint16_t)(m->fast + ((target - m->fast) * fast >> RATE_BITS));
-    m->slow =
-        (uint16_t)(m->slow + ((target - m->slow) * rate[m->uses] >> RATE_BITS));
-    if (m->uses < SLOW_USES)
-        m->uses++;
-}
-
-/* One bit that is 0 with probability p / 65536. */
-static inline unsigned code(pmesh_coder *c, uint32_t p, unsigned bit)
-{
-    p = p < PROBABILITY_MIN   ? PROBABILITY_MIN
-        : p > PROBABILITY_MAX ? PROBABILITY_MAX
-                              : p;
-    const uint32_t bound = (c->range >> PROBABILITY_BITS) * p;
-
-    if (!c->encoding)
-        bit = c->code >= bound;
-    if (bit) {
-        if (c->encoding)
-            c->low += bound;
-        else
-            c->code -= bound;
-        c->range -= bound;
-    } else {
-        c->range = bound;
-    }
-    pmesh_coder_normalize(c);
-    return bit;
-}
-
-unsigned pmesh_code_bit(pmesh_coder *c, pmesh_bit *m, unsigned bit)
-{
-    bit = code(c, ((uint32_t)m->fast + m->slow) / 2, bit);
-    adapt(m, bit);
-    return bit;
-}
-
-unsigned pmesh_code_bit_twice(pmesh_coder *c, pmesh_bit *m, pmesh_bit *n,
-                              unsigned bit)
-{
-    bit = code(c, ((uint32_t)m->fast + m->slow + n->fast + n->slow) / 4, bit);
-    adapt(m, bit);
-    adapt(n, bit);
-    return bit;
+    return c->out->size * 8 * 256 + 32 * 256 - log;
 }
 
 uint32_t pmesh_code_raw(pmesh_coder *c, unsigned count, uint32_t value)
 {
     uint32_t result = 0;
     while (count-- > 0) {
-        c->range >>= 1;
-        uint32_t bit = value >> count & 1;
-        if (!c->encoding)
-            bit = c->code >= c->range;
-        if (bit && c->encoding)
-            c->low += c->range;
-        else if (bit)
-            c->code -= c->range;
+        const uint64_t half = c->range >> 1;
+        const uint32_t bit =
+            c->encoding ? value >> count & 1 : c->code >= half;
+        pmesh_coder_narrow(c, half & (0 - (uint64_t)bit), half);
         result = result << 1 | bit;
-        pmesh_coder_normalize(c);
     }
     return result;
 }

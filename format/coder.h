@@ -7,9 +7,9 @@
  * written and returns the value that is in the stream, which when encoding is
  * the same. Codec code is written once, in format/, and calls these.
  *
- * The arithmetic is the carry-propagating coder of LZMA (Pavlov): 32-bit range,
- * bytes shifted out when it falls below 2^24. Probabilities have 16 bits and
- * are the mean of a fast and a slow estimate (SPEC 6.1).
+ * The arithmetic is that of LZMA's coder (Pavlov), with carries, on numbers of
+ * 64 bits: when the range falls below 2^32, 32 bits are shifted out at once, so
+ * that most bits need no more than a comparison. (SPEC 6.1)
  */
 #ifndef PMESH_CODER_H
 #define PMESH_CODER_H
@@ -18,24 +18,33 @@
 
 typedef struct pmesh_coder {
     bool encoding;
-    uint32_t range;
-    uint32_t code;        /* decoding: offset into the range */
-    pmesh_cursor in;      /* decoding: reads past the end give 0 and overrun */
-    pmesh_writer *out;    /* encoding */
-    uint64_t low;         /* encoding: 33 bits, the top one a carry */
-    uint64_t pending;     /* encoding: bytes held back for a carry */
-    uint8_t cache;        /* encoding: the first of them */
-    bool started;         /* encoding: a cache was written out */
+    uint64_t range;
+    uint64_t code;     /* decoding: offset into the range */
+    uint64_t low;      /* encoding: where the range starts */
+    pmesh_cursor in;   /* decoding: reads past the end give 0 and overrun */
+    pmesh_writer *out; /* encoding */
+    size_t start;      /* encoding: where in `out` the stream does */
 } pmesh_coder;
 
-/* Probability that the bit is 0, as two estimates in 1/65536, and how often
- * the model was used (capped). */
+/* The highest 22 bits are the probability that the bit is 0, the others how
+ * often the model was used (capped): together they are loaded and stored at
+ * once. */
 typedef struct pmesh_bit {
-    uint16_t fast, slow;
-    uint16_t uses;
+    uint32_t state;
 } pmesh_bit;
 
-#define PMESH_BIT_INIT { 32768, 32768, 0 }
+enum { PMESH_BIT_USES = 10, PMESH_BIT_MOST_USES = 127 };
+
+/* Probability of a 0 in 1/65536; how often the model was used. */
+static inline uint32_t pmesh_bit_odds(const pmesh_bit *m)
+{
+    return m->state >> 16;
+}
+
+static inline uint32_t pmesh_bit_uses(const pmesh_bit *m)
+{
+    return m->state & ((1u << PMESH_BIT_USES) - 1);
+}
 
 void pmesh_bits_init(pmesh_bit *bits, size_t count);
 
@@ -51,29 +60,80 @@ void pmesh_coder_decode(pmesh_coder *c, const uint8_t *data, size_t size);
  * the encoder leaves out. */
 bool pmesh_coder_finish(pmesh_coder *c);
 
-void pmesh_coder_shift(pmesh_coder *c); /* moves one byte out of `low` */
+void pmesh_coder_shift(pmesh_coder *c); /* goes on by 32 bits */
+
+/* Encoding: `low` has passed 2^64. */
+void pmesh_coder_carry(pmesh_coder *c);
 
 static inline void pmesh_coder_normalize(pmesh_coder *c)
 {
-    while (c->range < (1u << 24)) {
-        c->range <<= 8;
-        if (c->encoding) {
-            pmesh_coder_shift(c);
-        } else {
-            c->code = c->code << 8 | pmesh_get_u8(&c->in);
-        }
+    if (c->range < (UINT64_C(1) << 32))
+        pmesh_coder_shift(c);
+}
+
+/* The range is now `range` from `skip` on. */
+static inline void pmesh_coder_narrow(pmesh_coder *c, uint64_t skip,
+                                      uint64_t range)
+{
+    if (c->encoding) {
+        c->low += skip;
+        if (c->low < skip)
+            pmesh_coder_carry(c);
+    } else {
+        c->code -= skip;
     }
+    c->range = range;
+    pmesh_coder_normalize(c);
 }
 
 /* Encoding: what has been written so far, in 1/256 bit. */
 uint64_t pmesh_coder_spent(const pmesh_coder *c);
 
+/* 2 / (2 uses + 3), in 1/8192: how far an estimate goes towards a new bit. */
+extern const uint16_t pmesh_bit_rate[PMESH_BIT_MOST_USES + 1];
+
+static inline void pmesh_bit_learn(pmesh_bit *m, unsigned bit)
+{
+    const uint32_t uses = pmesh_bit_uses(m), counted = 1u << PMESH_BIT_USES;
+    const int32_t one = (1 << (32 - PMESH_BIT_USES)) - 1;
+    const int32_t off =
+        (((int32_t)bit - 1) & one) - (int32_t)(m->state >> PMESH_BIT_USES);
+    const uint32_t step = (uint32_t)(off >> 3) * pmesh_bit_rate[uses];
+    m->state += (step & ~(counted - 1)) + (uses < PMESH_BIT_MOST_USES);
+}
+
+/* One bit that is 0 with probability p / 65536, 0 < p < 65536. Which way it
+ * goes nobody can tell, so there is no branch. */
+static inline unsigned pmesh_code_odds(pmesh_coder *c, uint32_t p, unsigned bit)
+{
+    const uint64_t bound = (c->range >> 16) * p;
+    if (!c->encoding)
+        bit = c->code >= bound;
+    const uint64_t one = 0 - (uint64_t)bit;
+    pmesh_coder_narrow(c, bound & one,
+                       bound + ((c->range - 2 * bound) & one));
+    return bit;
+}
+
 /* One adaptive bit. */
-unsigned pmesh_code_bit(pmesh_coder *c, pmesh_bit *m, unsigned bit);
+static inline unsigned pmesh_code_bit(pmesh_coder *c, pmesh_bit *m,
+                                      unsigned bit)
+{
+    bit = pmesh_code_odds(c, pmesh_bit_odds(m) | 1, bit);
+    pmesh_bit_learn(m, bit);
+    return bit;
+}
 
 /* The same with the mean of two models, which both learn. */
-unsigned pmesh_code_bit_twice(pmesh_coder *c, pmesh_bit *m, pmesh_bit *n,
-                              unsigned bit);
+static inline unsigned pmesh_code_bit_twice(pmesh_coder *c, pmesh_bit *m,
+                                            pmesh_bit *n, unsigned bit)
+{
+    const uint32_t odds = (pmesh_bit_odds(m) + pmesh_bit_odds(n)) / 2;
+    bit = pmesh_code_odds(c, odds | 1, bit);
+    pmesh_bit_learn(m, bit);
+    pmesh_bit_learn(n, bit);
+    return bit;
+}
 
 /* `count` <= 32 bits of even odds, the most significant first. */
 uint32_t pmesh_code_raw(pmesh_coder *c, unsigned count, uint32_t value);

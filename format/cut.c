@@ -20,9 +20,9 @@ enum {
     TAKEN = INT16_MAX,  /* costs are below it by twice NO_SHARE at least */
 
     NO_SHARE = 64 * 16, /* so far above the least cost a share is 0 */
+    GOOD_ODDS = 13,     /* 7 : 5 or better */
     ERROR_ONE = 4096,
     LEARN_SHAPE = 512, /* error x term / this changes a weight of the shape */
-    LARGEST_PLACE = 1 << 26,
     LARGEST_SHAPE = (1 << 16) - 1 /* so that costs fit 16 bits */
 };
 
@@ -35,7 +35,6 @@ typedef struct row {
     uint32_t lane, live;
     uint32_t span;
     wing_set wings;
-    int32_t least; /* of the costs */
 } row;
 
 /* All rows, one behind the other; those with one wing last. */
@@ -44,7 +43,7 @@ typedef struct options {
     struct row row[MAX_ROWS];
     int16_t term[PMESH_CUT_TERMS][MAX_LANES];
     int16_t cost[MAX_LANES]; /* 1/64 bit, up to a constant */
-    uint16_t share[MAX_LANES];
+    int16_t share[MAX_LANES];
     uint32_t share_sum;
 } options;
 
@@ -57,8 +56,7 @@ typedef struct cutter {
     bool open;
     unsigned drop;         /* bits(n) */
     int16_t x[3][MEMBERS]; /* without the last bits(n) bits */
-    int16_t all[3];        /* sum of the members, modulo 2^16, */
-    int16_t part[3][ROOM]; /* of those from lane i on that u gets in a row */
+    int16_t all[3];        /* sum of the members, modulo 2^16 */
     int16_t square[ROOM];  /* of the whole coordinates, / 2^16 */
     int16_t reach[ROOM];   /* the terms of the squares */
     int16_t per_size;      /* 2^24 / mean square */
@@ -68,7 +66,7 @@ typedef struct cutter {
     pmesh_cut_weights *weights;
     /* What a member costs as wing a, b: by its degree, by the states around,
      * and together with its reach. */
-    int32_t *degree[2][PMESH_MAX_RING], *state[2][PMESH_MAX_RING];
+    int32_t *degree[PMESH_MAX_RING], *state[PMESH_MAX_RING];
     int16_t wing[2][MEMBERS];
     int16_t wing_error[2][MEMBERS];
     options *list;
@@ -102,11 +100,12 @@ static uint32_t padded(uint32_t count)
 static void place_drift(cutter *s, const int64_t drift[3], int shift)
 {
     for (int k = 0; k < 3; k++) {
-        const int64_t to = pmesh_scale(drift[k], shift) / s->newborn;
-        s->drift[k] = (int16_t)((to < -DRIFT_LIMIT  ? -DRIFT_LIMIT
-                                 : to > DRIFT_LIMIT ? DRIFT_LIMIT
-                                                    : to) >>
-                                s->drop);
+        const int64_t all = pmesh_scale(drift[k], shift);
+        const int32_t most = DRIFT_LIMIT * (int32_t)s->newborn;
+        const int32_t sum = (int32_t)(all < -most  ? -most
+                                      : all > most ? most
+                                                   : all);
+        s->drift[k] = (int16_t)(pmesh_share(sum, s->newborn) >> s->drop);
     }
 }
 
@@ -146,7 +145,6 @@ static void place_lanes(cutter *s, uint32_t at, const quads d[LANES], int up,
     for (int k = 0; k < 3; k++) {
         const lanes x = lanes_right(y[k], (int)s->drop);
         lanes_store(s->x[k] + at, x);
-        lanes_store(s->part[k] + at, x);
         square = lanes_add(square, lanes_high(y[k], y[k]));
         s->all[k] = (int16_t)(s->all[k] + lanes_total(x));
     }
@@ -196,9 +194,10 @@ static void measure(cutter *s)
     quads sum = quads_of(0);
     for (uint32_t i = 0; i < count; i += LANES)
         sum = quads_add(sum, quads_dot(lanes_load(s->square + i), lanes_of(1)));
-    const int32_t size = quads_total(sum) / (int32_t)s->n;
-    const int32_t per = (1 << 24) / (size > LEAST_SIZE ? size : LEAST_SIZE);
-    const int32_t far = (TERM_LIMIT << 16) / per;
+    const int32_t mean = pmesh_share(quads_total(sum), s->n);
+    const int32_t size = mean > LEAST_SIZE ? mean : LEAST_SIZE;
+    const int32_t per = (1 << 24) / size;
+    const int32_t far = TERM_LIMIT * size >> 8;
     s->per_size = (int16_t)per;
     s->far = (int16_t)(far < INT16_MAX ? far : INT16_MAX);
     for (uint32_t i = 0; i < count; i += LANES)
@@ -216,21 +215,20 @@ static void look_up_wings(cutter *s, const pmesh_codec *c,
     pmesh_cut_weights *w = s->weights;
     const uint32_t n = s->n;
     const uint32_t ghost = PMESH_GHOST;
-    uint32_t before = s->open ? ghost : c->state[ring->vertex[n - 1]];
-    uint32_t here = c->state[ring->vertex[0]];
+    uint32_t before = s->open ? ghost : pmesh_state(c, ring->vertex[n - 1]);
+    uint32_t here = pmesh_state(c, ring->vertex[0]);
     const uint32_t after = s->open ? ghost : here;
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t many = c->near[ring->vertex[i]].degree;
         const uint32_t degree =
             many < PMESH_CUT_DEGREES ? many : PMESH_CUT_DEGREES - 1;
         const uint32_t behind =
-            i + 1 < n ? c->state[ring->vertex[i + 1]] : after;
-        s->degree[0][i] = &w->degree[0][degree];
-        s->degree[1][i] = &w->degree[1][degree];
-        s->state[0][i] = &w->state[0][before][here][behind];
-        s->state[1][i] = &w->state[1][behind][here][before];
+            i + 1 < n ? pmesh_state(c, ring->vertex[i + 1]) : after;
+        s->degree[i] = w->degree[degree];
+        s->state[i] = w->state[before][here][behind];
         for (int side = 0; side < 2; side++)
-            sum[side][i] = *s->degree[side][i] + *s->state[side][i];
+            sum[side][i] = (int32_t)((uint32_t)s->degree[i][side] +
+                                     (uint32_t)s->state[i][side]);
         before = here;
         here = behind;
     }
@@ -290,7 +288,7 @@ typedef struct common {
     lanes place;      /* what the span costs */
     lanes drift[3], all[3];
     lanes shape[PMESH_CUT_TERMS];
-    lanes per_size, far, farther;
+    lanes per_size, far;
     int drop;
 } common;
 
@@ -305,8 +303,17 @@ static void make_common(const cutter *s, bool ghost, common *o)
     }
     o->per_size = lanes_of(s->per_size);
     o->far = lanes_of(s->far);
-    o->farther = lanes_of(s->newborn ? s->far : 0);
     o->drop = (int)s->drop;
+}
+
+/* Sizes of both rings, u's with `span` between its wings, and what that costs.
+ */
+static inline void make_span(const cutter *s, bool ghost, uint32_t span,
+                             common *o)
+{
+    o->to_u = lanes_of(share_of[span + 2]);
+    o->to_v = lanes_of(share_of[s->n - span + (ghost ? 1 : 2)]);
+    o->place = lanes_of(span_cost(s, ghost, span));
 }
 
 /* Of options, up to their third axis: squares of v's way off the centre of its
@@ -318,28 +325,32 @@ typedef struct squares {
 
 /* One axis: u gets `part`, v keeps what is left of all, and the wings. */
 static inline void add_axis(const common *o, int k, lanes part, lanes wings,
-                            squares *q)
+                            bool drifts, squares *q)
 {
     const lanes mean = lanes_high(part, o->to_u);
     const lanes rest =
         lanes_add(lanes_sub(o->all[k], part), lanes_add(wings, mean));
     const lanes v = lanes_left(lanes_high(rest, o->to_v), o->drop);
-    const lanes u = lanes_left(lanes_sub(mean, o->drift[k]), o->drop);
     q->off = lanes_add(q->off, lanes_high(v, v));
+    if (!drifts)
+        return;
+    const lanes u = lanes_left(lanes_sub(mean, o->drift[k]), o->drop);
     q->stray = lanes_add(q->stray, lanes_high(u, u));
 }
 
 /* The terms go to the list, costs are returned; `wings` is what those cost. */
 static inline lanes weigh_shape(options *list, const common *o, uint32_t lane,
-                                squares q, lanes wings)
+                                squares q, lanes wings, bool drifts)
 {
     const lanes off = terms_of(q.off, o->far, o->per_size);
-    const lanes stray = terms_of(q.stray, o->farther, o->per_size);
+    lanes cost = lanes_add(o->place, wings);
     lanes_store(list->term[0] + lane, off);
+    cost = lanes_add(cost, lanes_high(lanes_left(off, 4), o->shape[0]));
+    if (!drifts)
+        return cost;
+    const lanes stray = terms_of(q.stray, o->far, o->per_size);
     lanes_store(list->term[1] + lane, stray);
-    return lanes_add(lanes_add(o->place, wings),
-                     lanes_add(lanes_high(lanes_left(off, 4), o->shape[0]),
-                               lanes_high(lanes_left(stray, 4), o->shape[1])));
+    return lanes_add(cost, lanes_high(lanes_left(stray, 4), o->shape[1]));
 }
 
 /* In a row's first `live` lanes nothing, in the others TAKEN. */
@@ -348,54 +359,52 @@ static inline lanes weigh_shape(options *list, const common *o, uint32_t lane,
 static const int16_t barrier[] = { X24(INT16_MIN), X24(INT16_MIN), X24(TAKEN),
                                    X24(TAKEN) };
 
-/* LANES options of a span, from first wing `at` on: u gets another member, its
- * wing b. */
-static inline lanes weigh_lanes(cutter *s, const common *o, const row *r,
-                                uint32_t at)
-{
-    squares q = { lanes_of(0), lanes_of(0) };
-    for (int k = 0; k < 3; k++) {
-        const lanes a = lanes_load(s->x[k] + at);
-        const lanes b = lanes_load(s->x[k] + at + r->span);
-        const lanes part = lanes_add(lanes_load(s->part[k] + at), b);
-        lanes_store(s->part[k] + at, part);
-        add_axis(o, k, part, lanes_add(a, b), &q);
-    }
-    const lanes wings = lanes_add(lanes_load(s->wing[0] + at),
-                                  lanes_load(s->wing[1] + at + r->span));
-    const lanes cost =
-        lanes_max(weigh_shape(s->list, o, r->lane + at, q, wings),
-                  lanes_load(barrier + PMESH_MAX_RING - r->live + at));
-    lanes_store(s->list->cost + r->lane + at, cost);
-    return cost;
-}
-
-static int32_t least_of(const int16_t *cost, uint32_t count)
-{
-    lanes least = lanes_load(cost);
-    for (uint32_t i = LANES; i < count; i += LANES)
-        least = lanes_min(least, lanes_load(cost + i));
-    return lanes_least(least);
-}
-
 static row *add_row(options *list, wing_set wings, uint32_t span, uint32_t live)
 {
     row *r = &list->row[list->row_count++];
-    *r = (row){ list->count, live, span, wings, TAKEN };
+    *r = (row){ list->count, live, span, wings };
     list->count += padded(live);
     return r;
 }
 
-static void add_inner(cutter *s, common *o, uint32_t span, uint32_t live)
+/* The options whose first wing is one of members at .. at + 7, in all rows:
+ * with each span u gets another member, its wing b. */
+static inline void weigh_column(cutter *s, common *o, uint32_t at, bool drifts)
 {
-    row *r = add_row(s->list, BOTH, span, live);
-    o->to_u = lanes_of(share_of[span + 2]);
-    o->to_v = lanes_of(share_of[s->n - span + 2]);
-    o->place = lanes_of(span_cost(s, false, span));
-    lanes least = weigh_lanes(s, o, r, 0);
-    for (uint32_t at = LANES; at < live; at += LANES)
-        least = lanes_min(least, weigh_lanes(s, o, r, at));
-    r->least = lanes_least(least);
+    options *list = s->list;
+    const lanes wing = lanes_load(s->wing[0] + at);
+    lanes a[3], part[3];
+    for (int k = 0; k < 3; k++)
+        a[k] = part[k] = lanes_load(s->x[k] + at);
+    for (const row *r = list->row; r < list->row + list->row_count; r++) {
+        const uint32_t lane = r->lane + at, end = at + r->span;
+        squares q = { lanes_of(0), lanes_of(0) };
+        if (at >= r->live)
+            break;
+        make_span(s, false, r->span, o);
+        for (int k = 0; k < 3; k++) {
+            const lanes b = lanes_load(s->x[k] + end);
+            part[k] = lanes_add(part[k], b);
+            add_axis(o, k, part[k], lanes_add(a[k], b), drifts, &q);
+        }
+        const lanes cost =
+            weigh_shape(list, o, lane, q,
+                        lanes_add(wing, lanes_load(s->wing[1] + end)), drifts);
+        lanes_store(list->cost + lane,
+                    lanes_max(cost, lanes_load(barrier + PMESH_MAX_RING -
+                                               r->live + at)));
+    }
+}
+
+static void weigh_inner(cutter *s)
+{
+    common o;
+    make_common(s, false, &o);
+    for (uint32_t at = 0; at < s->n; at += LANES)
+        if (s->newborn)
+            weigh_column(s, &o, at, true);
+        else
+            weigh_column(s, &o, at, false);
 }
 
 /* Of an open ring: one wing is member x, the other the ghost. All lanes hold
@@ -406,13 +415,12 @@ static void weigh_outer(cutter *s, common *o, const row *r, uint32_t x,
     const uint32_t n = s->n, at = r->lane + x;
     const uint32_t span = r->wings == B_ONLY ? x : n - 1 - x;
     squares q = { lanes_of(0), lanes_of(0) };
-    o->to_u = lanes_of(share_of[span + 2]);
-    o->to_v = lanes_of(share_of[n - span + 1]);
-    o->place = lanes_of(span_cost(s, true, span));
+    make_span(s, true, span, o);
     for (int k = 0; k < 3; k++)
-        add_axis(o, k, lanes_of(part[k]), lanes_of(s->x[k][x]), &q);
+        add_axis(o, k, lanes_of(part[k]), lanes_of(s->x[k][x]), s->newborn, &q);
     const lanes wing = lanes_of(s->wing[r->wings == B_ONLY][x]);
-    lanes_store(s->list->cost + at, weigh_shape(s->list, o, at, q, wing));
+    lanes_store(s->list->cost + at,
+                weigh_shape(s->list, o, at, q, wing, s->newborn));
 }
 
 static void add_outer(cutter *s, common *o, wing_set wings)
@@ -432,20 +440,20 @@ static void add_outer(cutter *s, common *o, wing_set wings)
     }
     for (uint32_t at = r->lane + s->n; at < list->count; at++)
         list->cost[at] = TAKEN;
-    r->least = least_of(list->cost + r->lane, padded(s->n));
 }
 
 /* All legal cuts in a fixed order: by span, then first; the ghost last. */
 static void list_options(cutter *s)
 {
     const uint32_t n = s->n;
-    common o;
-    make_common(s, false, &o);
-    s->list->count = s->list->row_count = 0;
+    options *list = s->list;
+    list->count = list->row_count = 0;
     for (uint32_t span = 1; span < n; span++)
-        add_inner(s, &o, span, s->open ? n - span : n);
-    s->list->one_wing = s->list->count;
+        add_row(list, BOTH, span, s->open ? n - span : n);
+    list->one_wing = list->count;
+    weigh_inner(s);
     if (s->open) {
+        common o;
         make_common(s, true, &o);
         add_outer(s, &o, A_ONLY);
         add_outer(s, &o, B_ONLY);
@@ -461,47 +469,43 @@ static uint32_t count_options(const cutter *s)
 /* ---- coding ---------------------------------------------------------------
  */
 
-static row *cheapest_row(options *list)
+static int16_t least_cost(const options *list)
 {
-    row *best = list->row;
-    for (uint32_t k = 1; k < list->row_count; k++)
-        best = list->row[k].least < best->least ? &list->row[k] : best;
-    return best;
+    lanes least = lanes_of(TAKEN);
+    for (uint32_t k = 0; k < list->count; k += LANES)
+        least = lanes_min(least, lanes_load(list->cost + k));
+    return (int16_t)lanes_least(least);
 }
 
-static uint32_t cheapest(const options *list, const row *r)
+/* The first one that costs so much. */
+static uint32_t cheapest(const options *list, int16_t least)
 {
-    uint32_t i = r->lane;
-    while (list->cost[i] != r->least)
-        i++;
-    return i;
+    uint32_t k = 0;
+    int place = lanes_find(lanes_load(list->cost), least);
+    while (place == LANES)
+        place = lanes_find(lanes_load(list->cost + (k += LANES)), least);
+    return k + (uint32_t)place;
 }
 
-/* 2^15 x 2^(-i / 16), rounded; i / 16 of them shifted out. */
-#define S(k)                                                                   \
-    32768 >> (k), 31379 >> (k), 30048 >> (k), 28774 >> (k), 27554 >> (k),      \
-        26386 >> (k), 25268 >> (k), 24196 >> (k), 23170 >> (k), 22188 >> (k),  \
-        21247 >> (k), 20347 >> (k), 19484 >> (k), 18658 >> (k), 17867 >> (k),  \
-        17109 >> (k)
-static const uint16_t power[NO_SHARE / 4 + 1] = {
-    S(0), S(1), S(2),  S(3),  S(4),  S(5),  S(6),  S(7),
-    S(8), S(9), S(10), S(11), S(12), S(13), S(14), S(15),
-};
-
-/* 2^(-cost) of every option, the least cost as 2^15. */
-static void make_shares(options *list, int32_t least)
+/* About 2^(-cost) of every option, that of the least cost as 2^15: (1 - x)^16,
+ * where 16 x = cost ln 2. */
+static void make_shares(options *list, int16_t least)
 {
-    const lanes low = lanes_of((int16_t)least);
+    enum { PER_COST = 44 }; /* 2^16 / 16 x ln 2 / 64 */
+    const lanes low = lanes_of(least);
     const lanes high = lanes_of((int16_t)(least + NO_SHARE));
-    uint32_t sum = 0;
+    quads sum = quads_of(0);
     for (uint32_t k = 0; k < list->count; k += LANES) {
-        const lanes cost = lanes_min(lanes_load(list->cost + k), high);
-        int16_t over[LANES];
-        lanes_store(over, lanes_right(lanes_sub(cost, low), 2));
-        for (uint32_t i = 0; i < LANES; i++)
-            sum += list->share[k + i] = power[over[i]];
+        const lanes over =
+            lanes_sub(lanes_min(lanes_load(list->cost + k), high), low);
+        lanes x = lanes_sub(lanes_of(-1), lanes_times(over, PER_COST));
+        for (int i = 0; i < 4; i++)
+            x = lanes_high_unsigned(x, x);
+        x = lanes_half_unsigned(x);
+        lanes_store(list->share + k, x);
+        sum = quads_add(sum, quads_dot(x, lanes_of(1)));
     }
-    list->share_sum = sum;
+    list->share_sum = (uint32_t)quads_total(sum);
 }
 
 static int half_octave(uint64_t value)
@@ -517,28 +521,32 @@ static unsigned odds_class(uint32_t share, uint32_t sum)
 }
 
 /* The rank of the true option among all by cost; each question "is it the
- * cheapest left" is asked in the context of that option's odds. */
+ * cheapest left" is asked in the context of that option's odds. `expected`:
+ * the true one is the cheapest, with good odds. */
 static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
-                          uint32_t truth)
+                          uint32_t truth, bool *expected)
 {
     options *list = s->list;
     const uint32_t count = count_options(s);
-    row *r = cheapest_row(list);
-    uint32_t best = cheapest(list, r);
-    make_shares(list, r->least);
+    int16_t least = least_cost(list);
+    uint32_t best = cheapest(list, least);
+    make_shares(list, least);
     uint32_t sum = list->share_sum;
+    *expected = false;
     for (uint32_t rank = 0; rank + 1 < count; rank++) {
+        const uint32_t share = (uint32_t)list->share[best];
+        const unsigned odds = odds_class(share, sum);
         pmesh_bit *m =
             &c->models.cut[s->open]
                           [rank < PMESH_CUT_RANKS ? rank : PMESH_CUT_RANKS - 1]
-                          [odds_class(list->share[best], sum)];
-        if (!pmesh_code_bit(coder, m, best != truth))
+                          [odds];
+        if (!pmesh_code_bit(coder, m, best != truth)) {
+            *expected = rank == 0 && odds >= GOOD_ODDS;
             break;
+        }
         list->cost[best] = TAKEN;
-        sum -= list->share[best];
-        r->least = least_of(list->cost + r->lane, padded(r->live));
-        r = cheapest_row(list);
-        best = cheapest(list, r);
+        sum -= share;
+        best = cheapest(list, least_cost(list));
     }
     return best;
 }
@@ -546,9 +554,16 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
 /* ---- learning -------------------------------------------------------------
  */
 
-static void adjust(int32_t *weight, int32_t change, int32_t largest)
+/* Modulo 2^32: only a stream made for it goes that far. */
+static void adjust(int32_t *weight, int32_t change)
 {
-    *weight = within(*weight - change, largest);
+    *weight = (int32_t)((uint32_t)*weight - (uint32_t)change);
+}
+
+static void adjust_shape(int32_t *weight, quads change)
+{
+    *weight = within(*weight - quads_total(change) / LEARN_SHAPE,
+                     LARGEST_SHAPE);
 }
 
 /* Of each option: 0 less its share, 1 for the true one; takes the room of
@@ -558,25 +573,29 @@ static void make_errors(options *list, uint32_t truth)
     const lanes per_sum =
         lanes_of((int16_t)(((uint32_t)ERROR_ONE << 16) / list->share_sum));
     for (uint32_t k = 0; k < list->count; k += LANES) {
-        const lanes share = lanes_load((const int16_t *)list->share + k);
-        lanes_store(
-            list->cost + k,
-            lanes_sub(lanes_of(0), lanes_high_unsigned(share, per_sum)));
+        const lanes share = lanes_load(list->share + k);
+        lanes_store(list->cost + k,
+                    lanes_sub(lanes_of(0), lanes_high(share, per_sum)));
     }
     list->cost[truth] = (int16_t)(list->cost[truth] + ERROR_ONE);
 }
 
-static void learn_shape(options *list, int32_t *weight, uint32_t begin,
+static void learn_term(const options *list, int t, int32_t *weight,
+                       uint32_t begin, uint32_t end)
+{
+    quads sum = quads_of(0);
+    for (uint32_t k = begin; k < end; k += LANES)
+        sum = quads_add(sum, quads_dot(lanes_load(list->cost + k),
+                                       lanes_load(list->term[t] + k)));
+    adjust_shape(&weight[t], sum);
+}
+
+static void learn_shape(const cutter *s, bool ghost, uint32_t begin,
                         uint32_t end)
 {
-    quads sum[PMESH_CUT_TERMS] = { quads_of(0), quads_of(0) };
-    for (uint32_t k = begin; k < end; k += LANES)
-        for (int t = 0; t < PMESH_CUT_TERMS; t++)
-            sum[t] =
-                quads_add(sum[t], quads_dot(lanes_load(list->cost + k),
-                                            lanes_load(list->term[t] + k)));
-    for (int t = 0; t < PMESH_CUT_TERMS; t++)
-        adjust(&weight[t], quads_total(sum[t]) / LEARN_SHAPE, LARGEST_SHAPE);
+    learn_term(s->list, 0, shape_weights(s, ghost), begin, end);
+    if (s->newborn)
+        learn_term(s->list, 1, shape_weights(s, ghost), begin, end);
 }
 
 static void learn_inner(cutter *s, const row *r)
@@ -589,7 +608,7 @@ static void learn_inner(cutter *s, const row *r)
         lanes_store(b + i, lanes_add(lanes_load(b + i), error));
         all = quads_add(all, quads_dot(error, lanes_of(1)));
     }
-    adjust(span_weight(s, false, r->span), quads_total(all), LARGEST_PLACE);
+    adjust(span_weight(s, false, r->span), quads_total(all));
 }
 
 static void learn_outer(cutter *s, const row *r)
@@ -598,8 +617,7 @@ static void learn_outer(cutter *s, const row *r)
     const int side = r->wings == B_ONLY;
     for (uint32_t i = 0; i < r->live; i++) {
         s->wing_error[side][i] = (int16_t)(s->wing_error[side][i] + error[i]);
-        adjust(span_weight(s, true, side ? i : s->n - 1 - i), error[i],
-               LARGEST_PLACE);
+        adjust(span_weight(s, true, side ? i : s->n - 1 - i), error[i]);
     }
 }
 
@@ -618,11 +636,10 @@ static void learn_wings(cutter *s)
         }
     for (uint32_t i = 0; i < s->n; i++)
         for (int side = 0; side < 2; side++) {
-            adjust(s->degree[side][i], error[side][i], LARGEST_PLACE);
-            adjust(s->state[side][i], error[side][i], LARGEST_PLACE);
+            adjust(&s->degree[i][side], error[side][i]);
+            adjust(&s->state[i][side], error[side][i]);
         }
-    adjust(&s->weights->reach[s->open][s->newborn > 0],
-           quads_total(reach) / LEARN_SHAPE, LARGEST_SHAPE);
+    adjust_shape(&s->weights->reach[s->open][s->newborn > 0], reach);
 }
 
 /* One step down the gradient of the true cut's code length, as if it had been
@@ -631,9 +648,9 @@ static void learn(cutter *s, uint32_t truth)
 {
     options *list = s->list;
     make_errors(list, truth);
-    learn_shape(list, shape_weights(s, false), 0, list->one_wing);
+    learn_shape(s, false, 0, list->one_wing);
     if (s->open)
-        learn_shape(list, shape_weights(s, true), list->one_wing, list->count);
+        learn_shape(s, true, list->one_wing, list->count);
     for (int side = 0; side < 2; side++)
         memset(s->wing_error[side], 0, (2 * s->n + LANES) * sizeof(int16_t));
     for (uint32_t k = 0; k < list->row_count; k++)
@@ -685,8 +702,10 @@ void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
     measure(&s);
     weigh_wings(&s, c, ring);
     list_options(&s);
-    const uint32_t truth =
-        code_rank(&s, c, coder, coder->encoding ? find(&s, cut) : 0);
-    learn(&s, truth);
+    bool expected;
+    const uint32_t truth = code_rank(
+        &s, c, coder, coder->encoding ? find(&s, cut) : 0, &expected);
+    if (!expected)
+        learn(&s, truth);
     *cut = cut_of(&s, truth);
 }

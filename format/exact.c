@@ -42,19 +42,16 @@ static uint64_t code_uniform(pmesh_coder *c, uint64_t n, uint64_t value)
     const unsigned bits = bits_of(n - 1);
     const unsigned low = bits > UNIFORM_BITS ? bits - UNIFORM_BITS : 0;
     const uint32_t count = (uint32_t)((n - 1) >> low) + 1;
-    const uint32_t unit = c->range / count;
-    uint32_t high = (uint32_t)(value >> low);
+    const uint64_t unit = c->range / count;
+    uint64_t high = value >> low;
 
     if (!c->encoding)
         high = c->code / unit < count ? c->code / unit : count - 1;
-    if (c->encoding)
-        c->low += (uint64_t)unit * high;
-    else
-        c->code -= unit * high;
-    c->range = high + 1 < count ? unit : c->range - unit * (count - 1);
-    pmesh_coder_normalize(c);
+    pmesh_coder_narrow(c, unit * high,
+                       high + 1 < count ? unit
+                                        : c->range - unit * (count - 1));
     const uint64_t mask = ((uint64_t)1 << low) - 1;
-    return (uint64_t)high << low |
+    return high << low |
            pmesh_code_raw(c, low, (uint32_t)(value & mask));
 }
 

@@ -4,8 +4,8 @@
 #include <string.h>
 
 enum {
-    FORGET = 7,   /* a sample counts 1/128 less with each that follows */
-    INTERVAL = 1, /* samples between rounds */
+    INTERVAL = 4, /* samples between rounds; a power of two */
+    FORGET = 5,   /* what a sample counts for falls by 1/32 with each round */
     LARGEST = 1 << 19
 };
 
@@ -24,32 +24,36 @@ static const uint8_t place[PMESH_FIT_TERMS][PMESH_FIT_TERMS] = {
     { 21, 22, 23, 24, 25, 26, 27 },
 };
 
-/* One row of the sample, which has its first pair at `at`; `pair` gets the new
- * sums / 2^16. */
+/* One row of the sample, which has its first pair at `at`. */
 static inline void take_row(pmesh_fit *f, const int32_t *product, int i, int at,
-                            int64_t weight, int64_t *restrict pair)
+                            int64_t weight)
 {
-    int64_t *restrict sum = f->pair + at;
-    for (int j = 0; j <= i; j++) {
-        const int64_t now = sum[j] + weight * product[j] - (sum[j] >> FORGET);
-        sum[j] = now;
-        pair[at + j] = now >> 16;
-    }
-    f->target[i] +=
-        weight * product[PMESH_FIT_TERMS] - (f->target[i] >> FORGET);
+    for (int j = 0; j <= i; j++)
+        f->pair[at + j] += weight * product[j];
+    f->target[i] += weight * product[PMESH_FIT_TERMS];
 }
 
 /* Row by row, so that each has a constant length. */
-static void take_in(pmesh_fit *f, const pmesh_sample *s, int64_t weight,
-                    int64_t pair[PMESH_FIT_PAIRS])
+static void take_in(pmesh_fit *f, const pmesh_sample *s, int64_t weight)
 {
-    take_row(f, s->product[0], 0, 0, weight, pair);
-    take_row(f, s->product[1], 1, 1, weight, pair);
-    take_row(f, s->product[2], 2, 3, weight, pair);
-    take_row(f, s->product[3], 3, 6, weight, pair);
-    take_row(f, s->product[4], 4, 10, weight, pair);
-    take_row(f, s->product[5], 5, 15, weight, pair);
-    take_row(f, s->product[6], 6, 21, weight, pair);
+    take_row(f, s->product[0], 0, 0, weight);
+    take_row(f, s->product[1], 1, 1, weight);
+    take_row(f, s->product[2], 2, 3, weight);
+    take_row(f, s->product[3], 3, 6, weight);
+    take_row(f, s->product[4], 4, 10, weight);
+    take_row(f, s->product[5], 5, 15, weight);
+    take_row(f, s->product[6], 6, 21, weight);
+}
+
+/* `pair` gets the new sums / 2^16. */
+static void forget(pmesh_fit *f, int64_t pair[PMESH_FIT_PAIRS])
+{
+    for (int i = 0; i < PMESH_FIT_PAIRS; i++) {
+        f->pair[i] -= f->pair[i] >> FORGET;
+        pair[i] = f->pair[i] >> 16;
+    }
+    for (int i = 0; i < PMESH_FIT_TERMS; i++)
+        f->target[i] -= f->target[i] >> FORGET;
 }
 
 /* Sums stay below 2^28 x 2^18 x 2^7 = 2^53: shifted, times a weight, and all
@@ -77,7 +81,9 @@ void pmesh_fit_learn(pmesh_fit *f, const pmesh_sample *s, int32_t weight,
                      int64_t pull)
 {
     int64_t pair[PMESH_FIT_PAIRS];
-    take_in(f, s, weight, pair);
-    f->count++;
+    take_in(f, s, weight);
+    if (++f->count % INTERVAL)
+        return;
+    forget(f, pair);
     improve(f, pair, pull);
 }

@@ -194,7 +194,7 @@ static void place_provisionally(pmesh_codec *c, uint32_t u, uint32_t v,
     int32_t(*position)[3] = c->mesh.position;
     const uint32_t lead = leading(fans, p);
     uint32_t x = p->third[0], count = 1;
-    int64_t sum[3] = { position[v][0], position[v][1], position[v][2] };
+    int32_t sum[3] = { position[v][0], position[v][1], position[v][2] };
     gift g = { 0, 1 };
     if (lead != PMESH_NONE)
         g = gift_of(&fans->ring[lead], p, lead);
@@ -205,7 +205,7 @@ static void place_provisionally(pmesh_codec *c, uint32_t u, uint32_t v,
             sum[k] += position[x][k];
     }
     for (int k = 0; k < 3; k++)
-        position[u][k] = (int32_t)(sum[k] / count);
+        position[u][k] = pmesh_share(sum[k], count);
 }
 
 static void meet(pmesh_codec *c, uint32_t a, uint32_t b)

@@ -72,6 +72,24 @@ static inline lanes lanes_right(lanes a, int by)
     PMESH_EIGHT(a.x[i] >> by);
 }
 
+static inline lanes lanes_times(lanes a, int16_t by)
+{
+    PMESH_EIGHT(a.x[i] * by);
+}
+
+static inline lanes lanes_half_unsigned(lanes a)
+{
+    PMESH_EIGHT((uint16_t)a.x[i] >> 1);
+}
+
+static inline int lanes_find(lanes a, int16_t x)
+{
+    int i = 0;
+    while (i < 8 && a.x[i] != x)
+        i++;
+    return i;
+}
+
 static inline lanes lanes_high(lanes a, lanes b)
 {
     PMESH_EIGHT(a.x[i] * b.x[i] >> 16);

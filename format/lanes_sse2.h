@@ -59,6 +59,18 @@ static inline lanes lanes_right(lanes a, int by)
     return _mm_sra_epi16(a, _mm_cvtsi32_si128(by));
 }
 
+/* Modulo 2^16. */
+static inline lanes lanes_times(lanes a, int16_t by)
+{
+    return _mm_mullo_epi16(a, _mm_set1_epi16(by));
+}
+
+/* Of numbers without sign. */
+static inline lanes lanes_half_unsigned(lanes a)
+{
+    return _mm_srli_epi16(a, 1);
+}
+
 /* a b / 2^16 */
 static inline lanes lanes_high(lanes a, lanes b)
 {
@@ -77,6 +89,20 @@ static inline int lanes_least(lanes a)
     a = _mm_min_epi16(a, _mm_srli_si128(a, 4));
     a = _mm_min_epi16(a, _mm_srli_si128(a, 2));
     return (int16_t)_mm_extract_epi16(a, 0);
+}
+
+/* The first lane that holds x, or LANES. */
+static inline int lanes_find(lanes a, int16_t x)
+{
+    const int found = _mm_movemask_epi8(_mm_cmpeq_epi16(a, _mm_set1_epi16(x)));
+#if defined(__GNUC__)
+    return __builtin_ctz((unsigned)found | 0x10000) / 2;
+#else
+    int i = 0;
+    while (i < 8 && !(found >> 2 * i & 1))
+        i++;
+    return i;
+#endif
 }
 
 /* Modulo 2^16. */

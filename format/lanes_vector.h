@@ -69,6 +69,24 @@ static inline lanes lanes_right(lanes a, int by)
     return a >> lanes_of((int16_t)by);
 }
 
+static inline lanes lanes_times(lanes a, int16_t by)
+{
+    return (lanes)((pmesh_ulanes)a * (pmesh_ulanes)lanes_of(by));
+}
+
+static inline lanes lanes_half_unsigned(lanes a)
+{
+    return (lanes)((pmesh_ulanes)a >> (pmesh_ulanes)lanes_of(1));
+}
+
+static inline int lanes_find(lanes a, int16_t x)
+{
+    int i = 0;
+    while (i < 8 && a[i] != x)
+        i++;
+    return i;
+}
+
 static inline lanes lanes_high(lanes a, lanes b)
 {
     return __builtin_convertvector((PMESH_WIDE(a) * PMESH_WIDE(b)) >> 16,

@@ -11,6 +11,7 @@
 #include "format/predict.h"
 #include "format/rank.h"
 #include "format/residual.h"
+#include "format/star.h"
 #include "format/value.h"
 #include "format/wedge.h"
 
@@ -20,34 +21,41 @@ static pmesh_status corrupt(pmesh_codec *c, const char *rule)
     return PMESH_E_CORRUPT;
 }
 
-static uint32_t queue_vertex(pmesh_codec *c, uint32_t x, uint32_t count)
+/* The first vertices of `order` wait for their visit, or had it. */
+static void queue_vertex(pmesh_codec *c, uint32_t x)
 {
     if (c->state[x] != PMESH_UNVISITED)
-        return count;
-    c->state[x] = PMESH_KEPT;
-    c->order[count] = x;
-    return count + 1;
+        return;
+    c->state[x] = PMESH_UNVISITED | PMESH_QUEUED;
+    c->order[c->level_queued++] = x;
 }
 
-/* The members of a ring, of any size. */
-static uint32_t queue_ring(pmesh_codec *c, uint32_t start, uint32_t count)
+static void queue_ring(pmesh_codec *c, const pmesh_ring *ring)
+{
+    for (uint32_t i = 0; i < ring->count; i++)
+        queue_vertex(c, ring->vertex[i]);
+}
+
+/* The members of v's rings, of any size. */
+static void queue_rings(pmesh_codec *c, uint32_t v)
 {
     const pmesh_mesh *m = &c->mesh;
-    uint32_t h = start, last;
-    do {
-        count = queue_vertex(c, m->vertex[pmesh_next(h)], count);
-        last = pmesh_prev(h);
-        h = m->twin[last];
-    } while (h != PMESH_NONE && h != start);
-    return h == PMESH_NONE ? queue_vertex(c, m->vertex[last], count) : count;
+    uint32_t start = m->first[v];
+    for (uint32_t h = start; h != PMESH_NONE;
+         h = pmesh_corner_next(m, &start, h)) {
+        queue_vertex(c, m->vertex[pmesh_next(h)]);
+        if (pmesh_turn_left(m, h) == PMESH_NONE)
+            queue_vertex(c, m->vertex[pmesh_prev(h)]);
+    }
 }
 
 /* Of a vertex that the visit comes to later on: its first face, where known. */
-static void prefetch_visit(const pmesh_codec *c, uint32_t place, uint32_t end)
+static void prefetch_visit(const pmesh_codec *c)
 {
     enum { AHEAD = 6, FAR_AHEAD = 12 };
     const pmesh_mesh *m = &c->mesh;
-    if (place + FAR_AHEAD >= end)
+    const uint32_t place = c->level_next;
+    if (place + FAR_AHEAD >= c->level_queued)
         return;
     const uint32_t h = m->first[c->order[place + AHEAD]];
     pmesh_prefetch(&m->first[c->order[place + FAR_AHEAD]]);
@@ -55,30 +63,30 @@ static void prefetch_visit(const pmesh_codec *c, uint32_t place, uint32_t end)
     pmesh_prefetch(&m->vertex[h]);
 }
 
-/* Breadth first over the rings, from vertex 0 and again from the lowest vertex
- * not seen. */
 void pmesh_level_begin(pmesh_codec *c)
 {
-    const pmesh_mesh *m = &c->mesh;
-    const uint32_t n = m->vertex_count;
-    uint32_t count = 0, next = 0;
-
-    memset(c->state, PMESH_UNVISITED, n);
-    for (uint32_t seed = 0; seed < n; seed++) {
-        if (c->state[seed] != PMESH_UNVISITED)
-            continue;
-        c->state[seed] = PMESH_KEPT;
-        c->order[count++] = seed;
-        while (next < count) {
-            prefetch_visit(c, next, count);
-            for (uint32_t fan = m->first[c->order[next++]]; fan != PMESH_NONE;
-                 fan = m->fan ? m->fan[fan] : PMESH_NONE)
-                count = queue_ring(c, fan, count);
-        }
-    }
+    const uint32_t n = c->mesh.vertex_count;
     memset(c->state, PMESH_UNVISITED, n);
     c->level_vertex_count = n;
-    c->level_next = 0;
+    c->level_seed = c->level_queued = c->level_next = 0;
+}
+
+/* Breadth first over the rings, from vertex 0 and again from the lowest vertex
+ * not seen; PMESH_NONE behind the last. A split changes the ring of no vertex
+ * that is yet to be visited but for newborn members and their place in it: the
+ * order is that of the mesh before the level. */
+static uint32_t next_vertex(pmesh_codec *c)
+{
+    if (c->level_next == c->level_queued) {
+        while (c->level_seed < c->level_vertex_count &&
+               c->state[c->level_seed] != PMESH_UNVISITED)
+            c->level_seed++;
+        if (c->level_seed == c->level_vertex_count)
+            return PMESH_NONE;
+        queue_vertex(c, c->level_seed);
+    }
+    prefetch_visit(c);
+    return c->order[c->level_next++];
 }
 
 static uint32_t at_most(uint32_t value, uint32_t limit)
@@ -93,7 +101,7 @@ static uint32_t flag_context(const pmesh_codec *c, const pmesh_ring *ring,
     uint32_t seen[PMESH_GHOST + 1] = { 0 }, size = 0;
     for (uint32_t k = 0; k < rings; k++) {
         for (uint32_t i = 0; i < ring[k].count; i++)
-            seen[c->state[ring[k].vertex[i]]]++;
+            seen[pmesh_state(c, ring[k].vertex[i])]++;
         size += ring[k].count + ring[k].open;
     }
     const uint32_t valence = size < 4 ? 0 : at_most(size - 3, 7);
@@ -117,20 +125,21 @@ static uint32_t member(const pmesh_ring *ring, uint32_t i)
     return ring->vertex[i < ring->count ? i : i - ring->count];
 }
 
-/* u goes to the mean of its ring: of the members that the cut gives it, and
- * v. */
+/* The mean of the members that the cut gives u, and v: u's ring. */
 static void place_provisionally(pmesh_codec *c, uint32_t u, uint32_t v,
-                                const pmesh_ring *ring, pmesh_cut cut)
+                                const pmesh_ring *ring, uint32_t first,
+                                uint32_t count)
 {
-    int32_t(*position)[3] = c->mesh.position;
-    uint32_t first;
-    const uint32_t count = handed_over(ring, cut, &first);
-    int64_t sum[3] = { position[v][0], position[v][1], position[v][2] };
+    const int32_t(*position)[3] = (const int32_t(*)[3])c->mesh.position;
+    quads sum = quads_triple(position[v]);
     for (uint32_t i = first; i < first + count; i++)
-        for (int k = 0; k < 3; k++)
-            sum[k] += position[member(ring, i)][k];
+        sum = quads_add(sum, quads_triple(position[member(ring, i)]));
+    int32_t sums[QUADS];
+    quads_store(sums, sum);
+    pmesh_near_store(&c->near[u], sum);
+    c->near[u].degree = count + 1;
     for (int k = 0; k < 3; k++)
-        position[u][k] = (int32_t)(sum[k] / (count + 1));
+        c->mesh.position[u][k] = pmesh_share(sums[k], count + 1);
 }
 
 /* Members that are no wings change their neighbour v for u; wings gain u. */
@@ -138,28 +147,26 @@ static void count_neighbours(pmesh_codec *c, uint32_t v, uint32_t u,
                              const pmesh_ring *ring, pmesh_cut cut)
 {
     const int32_t(*position)[3] = (const int32_t(*)[3])c->mesh.position;
-    const quads at_u = quads_triple(position[u]),
-                at_v = quads_triple(position[v]);
-    quads near_u = at_v, near_v = quads_add(pmesh_near_load(&c->near[v]), at_u);
     uint32_t first;
     const uint32_t count = handed_over(ring, cut, &first);
+    place_provisionally(c, u, v, ring, first, count);
+    const quads at_u = quads_triple(position[u]);
+    const quads instead = quads_sub(at_u, quads_triple(position[v]));
+    quads near_v = quads_add(pmesh_near_load(&c->near[v]), at_u);
     for (uint32_t i = first; i < first + count; i++) {
         const uint32_t x = member(ring, i);
         const bool wing = (i == first && cut.first != PMESH_NONE) ||
                           (i == first + count - 1 && cut.end != PMESH_NONE);
-        const quads at_x = quads_triple(position[x]);
-        quads near_x = quads_add(pmesh_near_load(&c->near[x]), at_u);
-        near_u = quads_add(near_u, at_x);
-        if (!wing) {
-            near_x = quads_sub(near_x, at_v);
-            near_v = quads_sub(near_v, at_x);
+        const quads near_x = pmesh_near_load(&c->near[x]);
+        if (wing) {
+            pmesh_near_store(&c->near[x], quads_add(near_x, at_u));
+            c->near[x].degree++;
+            continue;
         }
-        pmesh_near_store(&c->near[x], near_x);
-        c->near[x].degree += wing;
+        pmesh_near_store(&c->near[x], quads_add(near_x, instead));
+        near_v = quads_sub(near_v, quads_triple(position[x]));
     }
-    pmesh_near_store(&c->near[u], near_u);
     pmesh_near_store(&c->near[v], near_v);
-    c->near[u].degree = count + 1;
     c->near[v].degree = ring->count - count + 1 + (cut.first != PMESH_NONE) +
                         (cut.end != PMESH_NONE);
 }
@@ -184,7 +191,6 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
     c->child_face[index] = m->face_count;
     if (c->sizes.moves)
         memcpy(c->unsplit[index], m->position[v], sizeof *c->unsplit);
-    place_provisionally(c, u, v, ring, cut);
     count_neighbours(c, v, u, ring, cut);
     pmesh_mesh_split(m, v, ring, cut);
     c->state[v] = PMESH_PARENT;
@@ -218,8 +224,12 @@ static pmesh_status visit(pmesh_codec *c, pmesh_coder *coder,
                           const pmesh_oracle *oracle, uint32_t v)
 {
     pmesh_ring ring;
-    return pmesh_ring_gather(&c->mesh, v, &ring) &&
-                   code_flag(c, coder, oracle, v, &ring, 1)
+    if (!pmesh_ring_gather(&c->mesh, v, &ring)) {
+        queue_rings(c, v);
+        return PMESH_OK;
+    }
+    queue_ring(c, &ring);
+    return code_flag(c, coder, oracle, v, &ring, 1)
                ? split(c, coder, oracle, v, &ring)
                : PMESH_OK;
 }
@@ -228,6 +238,7 @@ static pmesh_status visit_joined(pmesh_codec *c, pmesh_coder *coder,
                                  const pmesh_oracle *oracle, uint32_t v)
 {
     pmesh_fans fans;
+    queue_rings(c, v);
     return pmesh_fans_gather(&c->mesh, v, &fans) &&
                    code_flag(c, coder, oracle, v, fans.ring, fans.count)
                ? pmesh_join_split(c, coder, oracle, v, &fans)
@@ -240,10 +251,9 @@ static pmesh_status code_connectivity(pmesh_codec *c, pmesh_coder *coder,
 {
     pmesh_status status = PMESH_OK;
     while (c->block.vertex_count < split_count && status == PMESH_OK) {
-        if (c->level_next == c->level_vertex_count)
+        const uint32_t v = next_vertex(c);
+        if (v == PMESH_NONE)
             return corrupt(c, "SPEC 6.3: more splits than vertices");
-        prefetch_visit(c, c->level_next, c->level_vertex_count);
-        const uint32_t v = c->order[c->level_next++];
         c->state[v] = PMESH_KEPT;
         status = c->sizes.joined ? visit_joined(c, coder, oracle, v)
                                  : visit(c, coder, oracle, v);
@@ -278,13 +288,20 @@ static const pmesh_ring *ring_of(const pmesh_site *site)
     return site ? &site->ring : NULL;
 }
 
-static void keep_sites(pmesh_codec *c)
+/* Connectivity is complete now: what is known of every child's ring, and a
+ * better guess where it will be. */
+static void guess_positions(pmesh_codec *c)
 {
     const uint32_t begin = c->block.vertex;
     for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        pmesh_site site;
-        pmesh_site_keep(find_site(c, u, c->mesh.parent[u], &site),
-                        kept_site(c, u));
+        pmesh_site space;
+        const pmesh_site *site = find_site(c, u, c->mesh.parent[u], &space);
+        pmesh_site_keep(site, kept_site(c, u));
+        if (!site)
+            continue;
+        int32_t position[3];
+        pmesh_guess(c, u, &site->ring, position);
+        pmesh_place(c, u, &site->ring, position);
     }
 }
 
@@ -303,24 +320,6 @@ static const pmesh_site *take_site(const pmesh_codec *c, uint32_t u,
     return pmesh_site_kept(kept_site(c, u), site)
                ? site
                : find_site(c, u, c->mesh.parent[u], site);
-}
-
-/* Connectivity is complete now: a better guess for every provisional one. */
-static void sweep(pmesh_codec *c)
-{
-    pmesh_mesh *m = &c->mesh;
-    const uint32_t begin = c->block.vertex;
-    for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        const uint32_t v = m->parent[u];
-        pmesh_site space;
-        const pmesh_site *site = take_site(c, u, &space);
-        pmesh_prediction p;
-        int32_t position[3];
-        pmesh_predict(c, child_kind(c), u, site, m->position[v], begin, &p);
-        for (int k = 0; k < 3; k++)
-            position[k] = (int32_t)(p.position[k] >> 4);
-        pmesh_place(c, u, ring_of(site), position);
-    }
 }
 
 /* How far, in 1/16 steps, u lies above or below its parent: what the surface
@@ -413,8 +412,7 @@ pmesh_status pmesh_block_code(pmesh_codec *c, pmesh_coder *coder,
     if (status != PMESH_OK)
         return status;
     count_part(c, coder, 0, &written);
-    keep_sites(c);
-    sweep(c);
+    guess_positions(c);
     status = code_positions(c, coder, oracle);
     if (status != PMESH_OK)
         return status;

@@ -88,8 +88,8 @@ typedef struct pmesh_join_models {
 typedef struct pmesh_cut_weights {
     int32_t shape[3][2][PMESH_CUT_TERMS];
     int32_t reach[2][2];
-    int32_t degree[2][PMESH_CUT_DEGREES];
-    int32_t state[2][PMESH_STATES][PMESH_STATES][PMESH_STATES];
+    int32_t degree[PMESH_CUT_DEGREES][2]; /* as wing a, b */
+    int32_t state[PMESH_STATES][PMESH_STATES][PMESH_STATES][2];
     int32_t span[2][PMESH_CUT_RINGS][PMESH_CUT_SPANS];
 } pmesh_cut_weights;
 

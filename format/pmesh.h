@@ -156,7 +156,9 @@ typedef enum pmesh_placement {
 
 typedef enum pmesh_metric {
     PMESH_MEMORYLESS = 0, /* quadrics of the current surface: most accurate */
-    PMESH_ACCUMULATED = 1 /* quadrics summed from the original (1997) */
+    PMESH_ACCUMULATED = 1 /* quadrics summed from the original (1997): planes
+                             count once for each corner that went into a
+                             vertex, up to three times */
 } pmesh_metric;
 
 /* Who codes the shape of the base mesh. Attributes are coded by ourselves in

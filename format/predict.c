@@ -126,6 +126,47 @@ void pmesh_site_prefetch(const pmesh_codec *c,
     }
 }
 
+/* ---- guesses ------------------------------------------------------------ */
+
+/* If its parent stays, the mean of the ring, moved against the way that the
+ * surface bends around it: by 5/8 of the mean difference between its members'
+ * other neighbours and themselves. If both part, it lies close to where the
+ * parent was. Sums are modulo 2^32. */
+void pmesh_guess(const pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
+                 int32_t position[3])
+{
+    const int32_t(*at)[3] = (const int32_t(*)[3])c->mesh.position;
+    const int32_t *parent = at[c->mesh.parent[x]];
+    const quads here = quads_triple(at[x]);
+    quads sum = quads_of(0), bend = quads_of(0);
+    int32_t sums[QUADS], bends[QUADS];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < ring->count; i++) {
+        const pmesh_near *near = &c->near[ring->vertex[i]];
+        const quads member = quads_triple(at[ring->vertex[i]]);
+        const uint32_t others = near->degree - 1;
+        sum = quads_add(sum, member);
+        if (others >= PMESH_MAX_RING)
+            continue;
+        const quads around = quads_sub(pmesh_near_load(near), here);
+        bend = quads_add(bend, quads_sub(around, quads_times(member, others)));
+        count += others;
+    }
+    quads_store(sums, sum);
+    quads_store(bends, bend);
+    const int64_t by = count ? ((int64_t)5 << 29) / count : 0;
+    for (int k = 0; k < 3; k++) {
+        const int64_t mean = sums[k] * pmesh_reciprocal[ring->count];
+        const int64_t there = parent[k] * ((int64_t)1 << 32);
+        const int64_t to = c->sizes.moves ? (mean + 3 * there) >> 2
+                                          : mean - bends[k] * by;
+        const int64_t p = (to + ((int64_t)1 << 31)) >> 32;
+        position[k] = (int32_t)(p < 0               ? 0
+                                : p > c->bounds[k] ? c->bounds[k]
+                                                   : p);
+    }
+}
+
 /* ---- terms, from the ring's mean ---------------------------------------- */
 
 /* What a walk over the ring's members tells. */
@@ -359,9 +400,10 @@ enum {
 #define PULL_ALONG  ((int64_t)1 << 24)
 #define PULL_ACROSS ((int64_t)1 << 27)
 
+/* square < 2^32 - 1 */
 static int32_t sample_weight(int64_t square)
 {
-    const int64_t w = WEIGHT_SCALE / (square + 1);
+    const uint32_t w = WEIGHT_SCALE / ((uint32_t)square + 1);
     return (int32_t)(w < LARGEST_WEIGHT ? w : LARGEST_WEIGHT);
 }
 

@@ -67,6 +67,10 @@ bool pmesh_site_kept(const uint32_t kept[PMESH_KEPT_SITE], pmesh_site *s);
 void pmesh_site_prefetch(const pmesh_codec *c,
                          const uint32_t kept[PMESH_KEPT_SITE]);
 
+/* A guess at the position of x while its neighbours' are guesses, too. */
+void pmesh_guess(const pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
+                 int32_t position[3]);
+
 /* The position of x at its site; NULL: the ring is too large. Of its partner,
  * the other vertex of its split, this position is known; members of the ring
  * from `provisional` on (by number) have no final position yet; no partner is.

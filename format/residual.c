@@ -6,14 +6,16 @@
 enum {
     FRACTION_BITS = 4,
     FRACTION = 16,
-    ONE = 16384,     /* of normals and of variances relative to `along` */
-    MEAN_ONE = 4096, /* of pmesh_mean */
+    ONE_BITS = 14, /* of normals and of variances relative to `along` */
+    ONE = 1 << ONE_BITS,
+    MEAN_BITS = 12, /* of pmesh_mean */
     MEAN_USES = 60,
-    LEAST_RATIO = 128, /* across is taken as along / 128 at least */
+    MOST_SEEN = 64,  /* times the size of the ring */
+    FLATTEST = 7,    /* across is taken as along / 2^7 at least */
     LOW_MODELS = 3
 };
 
-#define LARGEST (1u << 24) /* of expected residuals */
+#define LARGEST (1u << 22) /* of expected residuals */
 
 /* Half octaves: 2 log2(value), rounded down; for value >= 1. */
 static unsigned half_octave(uint64_t value)
@@ -103,20 +105,27 @@ unsigned pmesh_deviation_scale(uint64_t deviation, unsigned count)
 
 static uint32_t expected(const pmesh_mean *m, uint32_t size)
 {
-    const uint64_t e = (uint64_t)m->value * size / MEAN_ONE;
+    const uint64_t e = (uint64_t)m->value * size >> MEAN_BITS;
     return e < 1 ? 1 : e > LARGEST ? LARGEST : (uint32_t)e;
 }
 
-static void learn(pmesh_mean *m, uint64_t seen, uint32_t size)
+/* 2 / (2 uses + 5) in 1/65536. */
+#define R(n)  (131072 / (2 * (n) + 5))
+#define R4(n) R(n), R((n) + 1), R((n) + 2), R((n) + 3)
+#define R20(n)                                                                 \
+    R4(n), R4((n) + 4), R4((n) + 8), R4((n) + 12), R4((n) + 16)
+static const uint16_t mean_rate[MEAN_USES + 1] = { R20(0), R20(20), R20(40),
+                                                   R(60) };
+
+/* `per` is 2^32 / size. */
+static void learn(pmesh_mean *m, uint64_t seen, uint32_t size, uint64_t per)
 {
-    uint64_t ratio = seen * MEAN_ONE / size;
-    if (ratio > 64 * MEAN_ONE)
-        ratio = 64 * MEAN_ONE;
-    const int64_t step =
-        ((int64_t)ratio - (int64_t)m->value) * 2 / (2 * (int64_t)m->uses + 5);
-    m->value = (uint32_t)((int64_t)m->value + step);
-    if (m->uses < MEAN_USES)
-        m->uses++;
+    const uint64_t most = (uint64_t)MOST_SEEN * size;
+    const uint64_t ratio =
+        (seen < most ? seen : most) * per >> (32 - MEAN_BITS);
+    const int64_t off = (int64_t)ratio - (int64_t)m->value;
+    m->value += (uint32_t)(off * mean_rate[m->uses] / 65536);
+    m->uses += m->uses < MEAN_USES;
 }
 
 /* The axis with the largest normal component last. */
@@ -136,29 +145,33 @@ static void axis_order(const int32_t n[3], int axis[3])
     axis[2] = last;
 }
 
-/* Given deviations along and across the normal, in units of `along`: the
- * covariance is I - rho n n', its inverse I + kappa n n'. */
+/* Residuals are a Gaussian with deviation `along` in the plane and `across`
+ * along the normal n: in units of `along` their covariance is I - rho n n'.
+ * Given some of the coordinates that of the others is the same with another
+ * rho, and their means are multiples of n. The product of all variances is the
+ * determinant: from it the last, which may be tiny, keeps its digits. */
 typedef struct gauss {
     int64_t n[3]; /* in coding order */
-    int64_t rho, kappa;
-    uint32_t along;
+    int64_t rho;
+    int64_t lean;  /* means are -lean n, in 1/16 */
+    uint64_t wide; /* square of `along` */
+    uint64_t left; /* square of `across`, over the variances so far */
 } gauss;
 
 static gauss gauss_make(const int32_t normal[3], const int axis[3],
                         uint32_t along, uint32_t across)
 {
-    gauss g = { .along = along };
+    gauss g = { .wide = (uint64_t)along * along };
     if (across > 4 * along)
         across = 4 * along;
-    const uint64_t ratio = (uint64_t)across * ONE / along; /* <= 4 * ONE */
-    const uint64_t least = ONE / LEAST_RATIO;
-    const int64_t q = (int64_t)(ratio < least ? least : ratio);
-    g.rho = ONE - q * q / ONE;
-    g.kappa = (int64_t)ONE * ONE / q * ONE / q - ONE; /* in 1/ONE */
+    if (across <= along >> FLATTEST)
+        across = (along >> FLATTEST) + 1;
     for (int k = 0; k < 3; k++)
         g.n[k] = normal[axis[k]];
-    if (g.n[2] == 0)
-        g.rho = g.kappa = 0;
+    g.left = g.n[2] ? (uint64_t)across * across : g.wide;
+    const int64_t ratio =
+        (int64_t)(((uint64_t)across << ONE_BITS) / along); /* <= 2 ONE */
+    g.rho = g.n[2] ? ONE - (ratio * ratio >> ONE_BITS) : 0;
     return g;
 }
 
@@ -168,46 +181,45 @@ static unsigned scale_of(uint64_t square)
     return scale < PMESH_SCALES ? scale : PMESH_SCALES - 1;
 }
 
-/* Mean and scale of coordinate k given the residuals d of those before;
- * everything in 1/16 grid steps. */
-static int64_t gauss_given(const gauss *g, int k, const int64_t d[3],
-                           unsigned *scale)
+/* Mean and scale of coordinate k, in 1/16 steps. */
+static int64_t gauss_expect(const gauss *g, int k, int64_t variance,
+                            unsigned *scale)
 {
-    const int64_t *n = g->n;
-    const uint64_t along = (uint64_t)g->along * g->along; /* <= 2^48 */
-    if (k == 2) {
-        const int64_t t = (n[0] * d[0] + n[1] * d[1]) / ONE;
-        const int64_t p = ONE + g->kappa * n[2] / ONE * n[2] / ONE;
-        *scale = scale_of(along * ONE / (uint64_t)p);
-        return -(g->kappa * n[2] / ONE * t) / p;
-    }
-    const int64_t least = ONE / 4096;
-    int64_t variance = ONE - g->rho * n[0] / ONE * n[0] / ONE, mean = 0;
-    if (variance < least)
-        variance = least;
-    if (k == 1) {
-        const int64_t both = -(g->rho * n[0] / ONE * n[1] / ONE);
-        mean = both * d[0] / variance;
-        const int64_t given =
-            ONE - g->rho * n[1] / ONE * n[1] / ONE - both * both / variance;
-        variance = given < least ? least : given;
-    }
-    *scale = scale_of(along * (uint64_t)variance / ONE);
-    return mean;
+    *scale = scale_of(k == 2 ? g->left
+                             : g->wide * (uint64_t)variance >> ONE_BITS);
+    return -(g->lean * g->n[k] >> ONE_BITS);
+}
+
+/* Of coordinate k, at least 1/4: normals may be a bit too long. */
+static int64_t gauss_variance(const gauss *g, int k)
+{
+    const int64_t n = g->n[k];
+    const int64_t v = ONE - ((g->rho * n >> ONE_BITS) * n >> ONE_BITS);
+    return v < ONE / 4 ? ONE / 4 : v;
+}
+
+/* It turned out to be `off` its mean. */
+static void gauss_given(gauss *g, int k, int64_t variance, int64_t off)
+{
+    const int64_t per = ONE * ONE / (int32_t)variance; /* <= 4 ONE */
+    g->rho = g->rho * per >> ONE_BITS;
+    g->left = g->left * (uint64_t)per >> ONE_BITS;
+    g->lean += (g->rho * g->n[k] >> ONE_BITS) * off >> ONE_BITS;
 }
 
 /* Learns from the outcome: d by coordinates, in coding order. */
 static void learn_errors(const gauss *g, const int64_t d[3], pmesh_mean *along,
                          pmesh_mean *across, uint32_t size)
 {
+    const uint64_t per = UINT64_C(0x100000000) / size;
     int64_t height = 0, flat[3];
     for (int k = 0; k < 3; k++)
         height += d[k] * g->n[k];
-    height /= ONE;
+    height >>= ONE_BITS;
     for (int k = 0; k < 3; k++)
-        flat[k] = d[k] - height * g->n[k] / ONE;
-    learn(along, (uint64_t)pmesh_rough_length(flat) * 181 / 256, size);
-    learn(across, (uint64_t)(height < 0 ? -height : height), size);
+        flat[k] = d[k] - (height * g->n[k] >> ONE_BITS);
+    learn(along, (uint64_t)pmesh_rough_length(flat) * 181 >> 8, size, per);
+    learn(across, (uint64_t)(height < 0 ? -height : height), size, per);
 }
 
 bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
@@ -224,11 +236,12 @@ bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
     int64_t d[3] = { 0, 0, 0 };
 
     axis_order(p->normal, axis);
-    const gauss g = gauss_make(p->normal, axis, wide, high);
+    gauss g = gauss_make(p->normal, axis, wide, high);
     for (int k = 0; k < 3; k++) {
         const int a = axis[k];
         at.place = (unsigned)k;
-        at.mean = p->position[a] + gauss_given(&g, k, d, &at.scale);
+        const int64_t variance = k < 2 ? gauss_variance(&g, k) : ONE;
+        at.mean = p->position[a] + gauss_expect(&g, k, variance, &at.scale);
         const int64_t value =
             code_coordinate(coder, &m->residual[which], &at, position[a]);
         if (value < 0 || value > c->bounds[a])
@@ -236,6 +249,8 @@ bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
         position[a] = (int32_t)value;
         d[k] = value * FRACTION - p->position[a];
         at.far = pmesh_how_far(value * FRACTION - at.mean, at.scale);
+        if (k < 2)
+            gauss_given(&g, k, variance, value * FRACTION - at.mean);
     }
     learn_errors(&g, d, along, across, p->size);
     pmesh_predict_learn(p, position, wide, high);

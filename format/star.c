@@ -9,9 +9,9 @@ enum {
 #define R(n)  ((int64_t)(((uint64_t)1 << 32) / (n)) + 1)
 #define R4(n) R(n), R((n) + 1), R((n) + 2), R((n) + 3)
 
-const int64_t pmesh_reciprocal[PMESH_MAX_RING + 1] = {
+const int64_t pmesh_reciprocal[PMESH_MAX_RING + 2] = {
     0,      R4(1),  R4(5),  R4(9),  R4(13), R4(17), R4(21),
-    R4(25), R4(29), R4(33), R4(37), R4(41), R4(45),
+    R4(25), R4(29), R4(33), R4(37), R4(41), R4(45), R(49),
 };
 
 /* Newton's method from above: falls until it would not any more. The first

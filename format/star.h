@@ -40,9 +40,10 @@ static inline int64_t pmesh_scale(int64_t value, int shift)
 }
 
 /* 2^32 / n, rounded up or 1 more. */
-extern const int64_t pmesh_reciprocal[PMESH_MAX_RING + 1];
+extern const int64_t pmesh_reciprocal[PMESH_MAX_RING + 2];
 
-/* value / count, rounded down or 1 less; |value| < 2^30, count of a ring. */
+/* value / count, rounded down or 1 less; |value| < 2^30, count of a ring or 1
+ * more. */
 static inline int32_t pmesh_share(int32_t value, uint32_t count)
 {
     return (int32_t)(value * pmesh_reciprocal[count] >> 32);

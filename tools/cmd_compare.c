@@ -103,6 +103,7 @@ static void put_side(json *j, const char *key, const side *s)
     json_count(j, "nonmanifold_edges", t->nonmanifold_edges);
     json_count(j, "misoriented_edges", t->misoriented_edges);
     json_count(j, "degenerate_faces", t->degenerate_faces);
+    json_count(j, "folds", t->folds);
     json_count(j, "components", t->components);
     json_number(j, "euler", (double)t->euler);
     json_close(j);
@@ -165,6 +166,7 @@ static void print_counts(const side sides[2])
         { "misoriented edges", a->misoriented_edges, b->misoriented_edges,
           false },
         { "degenerate faces", a->degenerate_faces, b->degenerate_faces, false },
+        { "folds", a->folds, b->folds, false },
     };
 
     for (size_t i = 0; i < 2; i++) {

@@ -113,6 +113,9 @@ static void print_text(const answer *a)
     if (a->pixels_per_unit > 0)
         printf(", %.3g pixels", (double)l->error * a->pixels_per_unit);
     putchar('\n');
+    if (a->h->measured)
+        printf("measured     %.4g rms, %.4g at most\n", (double)l->rms,
+               (double)l->furthest);
 }
 
 static void print_json(const char *path, const answer *a)
@@ -132,6 +135,10 @@ static void print_json(const char *path, const answer *a)
     json_count(&j, "vertices", l->mesh_vertices);
     json_count(&j, "output_vertices", l->vertices);
     json_float(&j, "error", l->error);
+    if (a->h->measured) {
+        json_float(&j, "rms", l->rms);
+        json_float(&j, "furthest", l->furthest);
+    }
     if (a->pixels_per_unit > 0)
         json_number(&j, "pixels", (double)l->error * a->pixels_per_unit);
     json_end(&j);

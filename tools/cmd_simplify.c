@@ -71,7 +71,7 @@ static const args_option option_table[] = {
     { .name = "memory", .kind = ARGS_NUMBER, .value = "W", .min = 0, .max = 1e6,
       AT(memory),
       .help = "how much the original counts beside the current\n"
-              "surface (default 0.5); more lowers the largest error" },
+              "surface (default 0.35); more lowers the largest error" },
     { .name = "normal-weight", .kind = ARGS_NUMBER, .value = "W", .min = 0,
       .max = 1e6, AT(weights.normal),
       .help = "how much a difference of 1 counts against the\n"
@@ -80,7 +80,10 @@ static const args_option option_table[] = {
       .max = 1e6, AT(weights.texcoord),
       .help = "the same of texture coordinates" },
     { .name = "color-weight", .kind = ARGS_NUMBER, .value = "W", .min = 0,
-      .max = 1e6, AT(weights.color), .help = "and of colours" },
+      .max = 1e6, AT(weights.color), .help = "of colours" },
+    { .name = "generic-weight", .kind = ARGS_NUMBER, .value = "W", .min = 0,
+      .max = 1e6, AT(weights.generic),
+      .help = "and of others: tangents, skin weights, your own" },
     { .name = "weld", .kind = ARGS_NUMBER, .value = "EPS", .min = 0,
       .max = DBL_MAX, AT(weld),
       .help = "join positions this close (model units);\n"

@@ -7,7 +7,7 @@
 /* An edge of a face: its ends in order, and whether the face runs high -> low.
  */
 typedef struct side {
-    uint32_t low, high;
+    uint32_t low, high, face;
     bool reversed;
 } side;
 
@@ -97,15 +97,48 @@ static size_t collect_sides(const asset *mesh, const uint32_t *first,
         for (size_t k = 0; k < 3; k++) {
             const uint32_t a = v[k];
             const uint32_t b = v[(k + 1) % 3];
-            sides[count++] =
-                a < b ? (side){ a, b, false } : (side){ b, a, true };
+            sides[count++] = (side){ .low = a < b ? a : b,
+                                     .high = a < b ? b : a,
+                                     .face = (uint32_t)f,
+                                     .reversed = a > b };
         }
     }
     return count;
 }
 
+static void normal_of(const asset *mesh, uint32_t face, double n[3])
+{
+    const uint32_t *t = &mesh->indices[3 * (size_t)face];
+    const double *p = &mesh->positions[3 * (size_t)t[0]];
+    double a[3], b[3];
+
+    for (size_t k = 0; k < 3; k++) {
+        a[k] = mesh->positions[3 * (size_t)t[1] + k] - p[k];
+        b[k] = mesh->positions[3 * (size_t)t[2] + k] - p[k];
+    }
+    n[0] = a[1] * b[2] - a[2] * b[1];
+    n[1] = a[2] * b[0] - a[0] * b[2];
+    n[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* cos 150 degrees is -sqrt(3 / 4); without square roots. */
+static bool is_fold(const asset *mesh, const side *a, const side *b)
+{
+    double n[3], m[3], square_n = 0, square_m = 0, product = 0;
+
+    normal_of(mesh, a->face, n);
+    normal_of(mesh, b->face, m);
+    for (size_t k = 0; k < 3; k++) {
+        square_n += n[k] * n[k];
+        square_m += m[k] * m[k];
+        product += n[k] * m[k];
+    }
+    return product < 0 && product * product > 0.75 * square_n * square_m;
+}
+
 /* `sides` has the sides of an edge next to each other. */
-static size_t count_edges(const side *sides, size_t count, topology_report *out)
+static size_t count_edges(const asset *mesh, const side *sides, size_t count,
+                          topology_report *out)
 {
     size_t edges = 0;
     for (size_t i = 0, n; i < count; i += n) {
@@ -118,6 +151,8 @@ static size_t count_edges(const side *sides, size_t count, topology_report *out)
         out->nonmanifold_edges += n > 2;
         out->misoriented_edges +=
             n == 2 && sides[i].reversed == sides[i + 1].reversed;
+        out->folds += n == 2 && sides[i].reversed != sides[i + 1].reversed &&
+                      is_fold(mesh, &sides[i], &sides[i + 1]);
     }
     return edges;
 }
@@ -170,7 +205,7 @@ bool topology_measure(const asset *mesh, topology_report *out)
         const size_t count = collect_sides(mesh, first, sides, out);
         sort_by_end(sides, count, false, starts, nv, sorted);
         sort_by_end(sorted, count, true, starts, nv, sides);
-        const size_t edges = count_edges(sides, count, out);
+        const size_t edges = count_edges(mesh, sides, count, out);
         count_pieces(sides, count, first, nv, out);
         out->euler = (long long)out->vertices - (long long)edges +
                      (long long)(mesh->face_count - out->degenerate_faces);

@@ -19,6 +19,7 @@ typedef struct topology_report {
     size_t misoriented_edges; /* both faces run along them the same way */
     size_t components;        /* pieces, connected through vertices */
     size_t degenerate_faces;
+    size_t folds; /* edges whose two faces look apart by over 150 degrees */
     long long euler; /* vertices - edges + faces */
 } topology_report;
 

@@ -5,10 +5,15 @@
 # Surface distance at equal face counts: levels of pmesh files, and meshes of
 # pmesh simplify, against the results of meshoptimizer and CGAL.
 #
-# Writes quality.csv and prints geometric means relative to CGAL's
-# Lindstrom-Turk, of the cases that met the face count within 2 %.
+# Writes quality.csv and prints, of the cases that met the face count within
+# 2 %: geometric means, with the number of cases and the worst, of
+#   rms / LT     distance relative to CGAL's Lindstrom-Turk
+#   rms / mo     the same to meshoptimizer
+#   max / GH     largest distance relative to CGAL's Garland-Heckbert
+#   normal / LT  angle of the normals relative to CGAL's Lindstrom-Turk
+# and sums over all models of folds, flipped faces and non-manifold edges.
 # BITS: of the positions (14); PERCENTS: levels to compare (50 10 1); MESHDIST:
-# see common.sh.
+# see common.sh; without it nobody counts flipped faces.
 . tests/bench/common.sh
 bits=${BITS:-14}
 percents=${PERCENTS:-50 10 1}
@@ -16,9 +21,26 @@ need "$tools/bench_simplify" "make bench-quality"
 dir=$OUT/quality
 mkdir -p "$dir"
 
+# quality ORIGINAL MESH: rms,max,normal_deg,folds,flipped,nonmanifold_edges of
+# the meter; of what it says of both meshes, that of the latter comes last
+quality() {
+    ${MESHDIST:-$PMESH compare --json} "$1" "$2" | tr ',{}' '[\n*]' |
+        awk -F '": *' '
+            { sub(/^[ \t]*"/, ""); value[$1] = $2 }
+            END {
+                for (k in value)
+                    if (k ~ /_rel$/)
+                        value[substr(k, 1, length(k) - 4)] = value[k]
+                n = split("rms max normal_deg folds flipped " \
+                          "nonmanifold_edges", key, " ")
+                for (i = 1; i <= n; i++)
+                    printf "%s%s", value[key[i]], i < n ? "," : "\n"
+            }'
+}
+
 # measure MODEL TOOL PERCENT TARGET CPU LEVEL: one row
 measure() {
-    distance=$(rms "$1" "$6")
+    distance=$(quality "$1" "$6")
     echo "$(basename "$1" .obj),$2,$3,$4,$(faces "$6"),$distance,$5"
 }
 
@@ -49,7 +71,8 @@ simplify() {
 }
 
 {
-    echo model,tool,percent,target,faces,rms,cpu_s
+    echo model,tool,percent,target,faces,rms,max,normal_deg,folds,flipped,\
+nonmanifold_edges,cpu_s
     models | while read -r model; do
         progress "$(basename "$model" .obj)"
         # shellcheck disable=SC2086 # words on purpose
@@ -68,30 +91,62 @@ simplify() {
 } >"$OUT/quality.csv"
 
 awk -F , -v percents="$percents" '
-    NR > 1 {
-        if (!($2 in seen)) { seen[$2]; order[++tools] = $2 }
-        if ($5 <= 1.02 * $4 && $5 >= 0.98 * $4 && $6 > 0)
-            rms[$1, $2, $3] = $6
-        models[$1]
-    }
-    END {
-        n = split(percents, percent, " ")
-        printf "%-17s", "rms / LT"
+    function heading(title,   p) {
+        printf "%-17s", title
         for (p = 1; p <= n; p++)
-            printf " %9s%% (n)", percent[p]
+            printf " %16s", percent[p] "%"
         print ""
+    }
+    # Of one column, relative to that of a tool.
+    function ratios(title, column, base,   t, p, m, own, other, sum, count, most) {
+        heading(title)
         for (t = 1; t <= tools; t++) {
             printf "%-17s", order[t]
             for (p = 1; p <= n; p++) {
-                sum = count = 0
+                sum = count = most = 0
                 for (m in models) {
-                    base = rms[m, "cgal-lt", percent[p]]
-                    own = rms[m, order[t], percent[p]]
-                    if (base > 0 && own > 0) { sum += log(own / base); count++ }
+                    other = value[m, base, percent[p], column]
+                    own = value[m, order[t], percent[p], column]
+                    if (!(other > 0 && own > 0))
+                        continue
+                    sum += log(own / other)
+                    count++
+                    if (own / other > most)
+                        most = own / other
                 }
-                printf " %10s (%d)", \
-                    count ? sprintf("%.3f", exp(sum / count)) : "-", count
+                printf " %16s", count ? sprintf("%.3f (%d, %.2f)", \
+                    exp(sum / count), count, most) : "-"
             }
             print ""
         }
+        print ""
+    }
+    function sums(title,   t, p) {
+        heading(title)
+        for (t = 1; t <= tools; t++) {
+            printf "%-17s", order[t]
+            for (p = 1; p <= n; p++)
+                printf " %16s", total[order[t], percent[p], 9] "/" \
+                    total[order[t], percent[p], 10] "/" \
+                    total[order[t], percent[p], 11]
+            print ""
+        }
+    }
+    BEGIN { n = split(percents, percent, " ") }
+    NR > 1 {
+        if (!($2 in seen)) { seen[$2]; order[++tools] = $2 }
+        models[$1]
+        if (!($5 <= 1.02 * $4 && $5 >= 0.98 * $4))
+            next
+        for (i = 6; i <= 11; i++) {
+            value[$1, $2, $3, i] = $i
+            total[$2, $3, i] += $i
+        }
+    }
+    END {
+        ratios("rms / LT", 6, "cgal-lt")
+        ratios("rms / mo", 6, "meshopt")
+        ratios("max / GH", 7, "cgal-gh")
+        ratios("normal / LT", 8, "cgal-lt")
+        sums("folds/flips/nm")
     }' "$OUT/quality.csv"

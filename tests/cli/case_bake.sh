@@ -65,6 +65,12 @@ check 'verify a measured file' 0 verify m.pmesh
 check 'info of a measured file' 0 info --json m.pmesh
 ok 'info knows' test "$(json measured)" = true
 ok 'and tells' out '"rms": '
+check 'plan of a measured file' 0 plan m.pmesh --faces 1000
+ok 'tells what was measured' out '^measured .* rms, .* at most$'
+check 'plan --json of it' 0 plan m.pmesh --faces 1000 --json
+ok 'is near what is bounded' awk -v rms="$(json rms)" \
+    -v most="$(json furthest)" \
+    'BEGIN { exit !(0 < rms && rms < most) }'
 check 'info of another' 0 info --json a.pmesh
 ok 'others are not' test "$(json measured)" = false
 check 'a cost with camera needs one' 2 bake "$torus" -o o.pmesh --cost camera

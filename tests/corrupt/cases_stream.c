@@ -186,7 +186,7 @@ static void break_sizes(void)
 {
     static const struct {
         const char *name;
-        uint8_t bytes[8];
+        uint8_t bytes[12];
         size_t size;
     } starts[] = {
         { "size-above-2-28", { BASE, 0x81, 0x80, 0x80, 0x80, 0x01 }, 6 },
@@ -227,25 +227,26 @@ typedef struct payload_case {
     const char *name;
     base_file base;
     uint8_t type;
-    uint8_t bytes[8];
+    uint8_t bytes[12];
     size_t size;
     bool at_end; /* these are added; else they replace the first */
     const char *rule;
 } payload_case;
 
 static const payload_case payloads[] = {
-    { "base-with-zeros-more", PLAIN, BASE, { 0 }, 8, true,
+    /* As many as a decoder reads ahead, and more. */
+    { "base-with-zeros-more", PLAIN, BASE, { 0 }, 12, true,
       UNUSED "the base mesh" },
-    { "base-with-bytes-more", FULL, BASE, { 1, 2, 3 }, 8, true,
+    { "base-with-bytes-more", FULL, BASE, { 1, 2, 3 }, 12, true,
       UNUSED "the base mesh" },
-    { "block-with-zeros-more", PLAIN, LAST, { 0 }, 8, true, UNUSED "a block" },
-    { "block-with-bytes-more", MOVING, LAST, { 9, 9, 9, 9, 9, 9 }, 6, true,
+    { "block-with-zeros-more", PLAIN, LAST, { 0 }, 12, true, UNUSED "a block" },
+    { "block-with-bytes-more", MOVING, LAST, { 9, 9, 9, 9, 9, 9 }, 12, true,
       UNUSED "a block" },
-    { "positions-with-zeros-more", FULL, POSITIONS, { 0 }, 8, true,
+    { "positions-with-zeros-more", FULL, POSITIONS, { 0 }, 12, true,
       UNUSED "positions" },
-    { "positions-with-bytes-more", COARSE, POSITIONS, { 7, 7, 7, 7, 7, 7 }, 6, true,
+    { "positions-with-bytes-more", COARSE, POSITIONS, { 7, 7, 7, 7, 7, 7 }, 12, true,
       UNUSED "positions" },
-    { "draco-base-with-zeros-more", DRACO, BASE, { 0 }, 8, true,
+    { "draco-base-with-zeros-more", DRACO, BASE, { 0 }, 12, true,
       UNUSED "the base mesh" },
     { "block-of-0-splits", PLAIN, LAST, { 0 }, 1, false, COUNT },
     { "block-of-32769-splits", PLAIN, LAST, { 0x81, 0x80, 0x02 }, 3, false,

@@ -138,7 +138,7 @@ static int choose(void *user, const ref_model *m, int given)
     }
     if (!w->turned)
         return given;
-    return m && m->fast + m->slow < 65536;
+    return m && m->p < 1 << 21;
 }
 
 static uint32_t pick(void *user, uint32_t cells, uint32_t given)

@@ -222,7 +222,7 @@ static int choose_any(void *user, const ref_model *m, int given)
     const ref *r = w->r;
     if (!m)
         return (int)shape_random(&w->seed, 2);
-    const uint32_t p = (uint32_t)(m->fast + m->slow) / 2;
+    const uint32_t p = (uint32_t)m->p / 64;
     const int expected = shape_random(&w->seed, 65536) >= p;
     if (within(m, r->flag, sizeof r->flag))
         return shape_random(&w->seed, 3) > 0;

@@ -36,7 +36,7 @@ enum {
 /* ---- 6.1 entropy coding ------------------------------------------------- */
 
 typedef struct ref_model {
-    int32_t fast, slow, uses;
+    int32_t p, uses; /* p in 1/2^22 */
 } ref_model;
 
 typedef struct ref_number {
@@ -56,7 +56,7 @@ typedef struct ref_author {
 
 typedef struct ref_coder {
     const uint8_t *next, *end;
-    uint32_t range, code;
+    uint64_t range, code;
     ref_author *author; /* NULL: none */
 } ref_coder;
 
@@ -184,15 +184,15 @@ typedef struct ref_base_models {
 } ref_base_models;
 
 typedef struct ref_cut_models {
-    int32_t shape[3][2][2], reach[2][2], span[2][14][10], degree[2][12],
-        state[2][5][5][5];
+    int32_t shape[3][2][2], reach[2][2], span[2][14][10], degree[12][2],
+        state[5][5][5][2];
     ref_model rank[2][4][32];
 } ref_cut_models;
 
 /* The weights of one kind, class and unknown; [0] along, [1] across. */
 typedef struct ref_fit {
     int64_t w[2][REF_TERMS], start[2][REF_TERMS];
-    int64_t m[2][REF_TERMS][REF_TERMS], b[2][REF_TERMS];
+    int64_t m[2][REF_TERMS][REF_TERMS], b[2][REF_TERMS], samples[2];
 } ref_fit;
 
 typedef struct ref_expected {
@@ -408,6 +408,8 @@ int64_t ref_read_near(ref *r, const ref_near *at);
 int ref_how_far(int64_t coordinate, const ref_near *at);
 int64_t ref_len(ref_vec v);
 int64_t ref_isqrt(int64_t v);
+int64_t ref_share(int64_t v, int64_t k);
+ref_vec ref_vshare(ref_vec v, int64_t k);
 void ref_read_positions(ref *r);
 
 /* 6.6. */

@@ -110,8 +110,8 @@ uint64_t ref_or(ref_vec a)
 
 void ref_model_load(ref_model *m, int entry)
 {
-    *m = entry > 0 ? (ref_model){ 256 * entry + 128, 256 * entry + 128, 12 }
-                   : (ref_model){ 32768, 32768, 0 };
+    *m = entry > 0 ? (ref_model){ 16384 * entry + 8192, 12 }
+                   : (ref_model){ 1 << 21, 0 };
 }
 
 void ref_model_start(ref_model *m, size_t count)
@@ -128,12 +128,9 @@ void ref_number_start(ref_number *n)
 
 static void learn(ref_model *m, int bit)
 {
-    const int target = bit ? 0 : 65535;
-    const int fast = m->uses < 30 ? m->uses : 30;
-    m->fast += (int32_t)ref_shift(
-        (int64_t)(target - m->fast) * (65536 / (2 * fast + 3)), 15);
-    m->slow += (int32_t)ref_shift(
-        (int64_t)(target - m->slow) * (65536 / (2 * m->uses + 3)), 15);
+    const int32_t target = bit ? 0 : (1 << 22) - 1;
+    const int64_t rate = 16384 / (2 * m->uses + 3);
+    m->p += (int32_t)ref_shift(ref_shift(target - m->p, 3) * rate, 10);
     m->uses = m->uses < 127 ? m->uses + 1 : 127;
 }
 
@@ -147,52 +144,65 @@ static uint32_t next_byte(ref_coder *c)
     return 0;
 }
 
-/* The bytes of low leave it from the top; what carries over is added to those
- * that left. */
-static void write_byte(ref_author *a)
+/* Four bytes of low leave it from the top. */
+static void write_bytes(ref_author *a)
 {
-    if (a->low >> 32)
+    for (int i = 0; i < 4; i++) {
+        if (a->size == a->room) {
+            a->room = 2 * a->room + 64;
+            a->data = realloc(a->data, a->room);
+        }
+        a->data[a->size++] = (uint8_t)(a->low >> 56);
+        a->low <<= 8;
+    }
+}
+
+/* What carries over is added to the bytes that left. */
+static void raise_low(ref_author *a, uint64_t by)
+{
+    a->low += by;
+    if (a->low < by)
         for (size_t i = a->size; i-- > 0 && ++a->data[i] == 0;)
             ;
-    if (a->size == a->room) {
-        a->room = 2 * a->room + 64;
-        a->data = realloc(a->data, a->room);
-    }
-    a->data[a->size++] = (uint8_t)(a->low >> 24);
-    a->low = (a->low & 0xffffff) << 8;
 }
 
 void ref_author_end(ref_author *a)
 {
+    write_bytes(a);
+    write_bytes(a);
+}
+
+static void read_bytes(ref_coder *c)
+{
     for (int i = 0; i < 4; i++)
-        write_byte(a);
+        c->code = c->code * 256 + next_byte(c);
 }
 
 static void normalise(ref_coder *c)
 {
-    while (c->range < 1u << 24) {
-        c->range *= 256;
-        if (c->author)
-            write_byte(c->author);
-        c->code = c->code * 256 + next_byte(c);
-    }
+    if (c->range >> 32)
+        return;
+    c->range <<= 32;
+    if (c->author)
+        write_bytes(c->author);
+    read_bytes(c);
 }
 
 void ref_coder_start(ref_coder *c, const uint8_t *data, const uint8_t *end)
 {
-    *c = (ref_coder){ data, end, UINT32_MAX, 0, c->author };
-    for (int i = 0; i < 4; i++)
-        c->code = c->code * 256 + next_byte(c);
+    *c = (ref_coder){ data, end, UINT64_MAX, 0, c->author };
+    for (int i = 0; i < 2; i++)
+        read_bytes(c);
 }
 
 /* Is code in the upper part, from `bound` on? Goes on with that part. */
-static int above(ref_coder *c, uint32_t bound, const ref_model *m)
+static int above(ref_coder *c, uint64_t bound, const ref_model *m)
 {
     const int given = c->code >= bound;
     const int bit =
         c->author ? c->author->choose(c->author->user, m, given) : given;
     if (bit && c->author)
-        c->author->low += bound;
+        raise_low(c->author, bound);
     if (bit)
         c->code -= bound;
     return bit;
@@ -200,10 +210,7 @@ static int above(ref_coder *c, uint32_t bound, const ref_model *m)
 
 static int decide(ref_coder *c, int32_t p, const ref_model *m)
 {
-    if (p < 32 || p > 65504)
-        REF_SEEN(p_limited);
-    const uint32_t bound =
-        c->range / 65536 * (uint32_t)ref_clamp(p, 32, 65504);
+    const uint64_t bound = (c->range >> 16) * (uint32_t)(p | 1);
     const int bit = above(c, bound, m);
     c->range = bit ? c->range - bound : bound;
     normalise(c);
@@ -212,15 +219,14 @@ static int decide(ref_coder *c, int32_t p, const ref_model *m)
 
 int ref_bit(ref_coder *c, ref_model *m)
 {
-    const int bit = decide(c, (m->fast + m->slow) / 2, m);
+    const int bit = decide(c, m->p / 64, m);
     learn(m, bit);
     return bit;
 }
 
 int ref_bit2(ref_coder *c, ref_model *m, ref_model *n)
 {
-    const int bit =
-        decide(c, (m->fast + m->slow + n->fast + n->slow) / 4, m);
+    const int bit = decide(c, (m->p / 64 + n->p / 64) / 2, m);
     learn(m, bit);
     learn(n, bit);
     return bit;
@@ -262,9 +268,9 @@ uint64_t ref_uniform(ref_coder *c, uint64_t n)
 {
     const int bits = ref_bits(n - 1);
     const int low = bits > 16 ? bits - 16 : 0;
-    const uint32_t cells = (uint32_t)((n - 1) >> low) + 1;
-    const uint32_t unit = c->range / cells;
-    uint32_t high = c->code / unit;
+    const uint64_t cells = ((n - 1) >> low) + 1;
+    const uint64_t unit = c->range / cells;
+    uint64_t high = c->code / unit;
     if (low > 0)
         REF_SEEN(uniform_raw);
     if (high > cells - 1) {
@@ -272,11 +278,12 @@ uint64_t ref_uniform(ref_coder *c, uint64_t n)
         high = cells - 1;
     }
     if (c->author && c->author->pick) {
-        high = c->author->pick(c->author->user, cells, high);
-        c->author->low += (uint64_t)unit * high;
+        high = c->author->pick(c->author->user, (uint32_t)cells,
+                               (uint32_t)high);
+        raise_low(c->author, unit * high);
     }
     c->code -= unit * high;
     c->range = high < cells - 1 ? unit : c->range - unit * (cells - 1);
     normalise(c);
-    return ((uint64_t)high << low) + ref_raw(c, low);
+    return (high << low) + ref_raw(c, low);
 }

@@ -2,8 +2,6 @@
 /* SPEC 6.4: cuts, ranked by a cost that learns. */
 #include "tests/reference/ref.h"
 
-#include <math.h>
-
 typedef struct option {
     ref_cut cut;
     int span;
@@ -76,8 +74,8 @@ static void set_drift(options *o, int s)
     o->newborn = newborn > 0;
     if (!o->newborn)
         return;
-    sum = ref_vwithin(ref_over(ref_vscale(sum, s), newborn), 1 << 13);
-    o->drift = ref_vshift(sum, o->b);
+    sum = ref_vwithin(ref_vscale(sum, s), newborn << 13);
+    o->drift = ref_vshift(ref_vshare(sum, newborn), o->b);
 }
 
 static void scale_ring(options *o, uint32_t v)
@@ -97,9 +95,9 @@ static void scale_ring(options *o, uint32_t v)
         o->x[i] = ref_vshift(o->y[i], o->b);
         sum += sq(o->y[i]);
     }
-    const int64_t size = sum / n > 513 ? sum / n : 513;
+    const int64_t size = ref_share(sum, n) > 513 ? ref_share(sum, n) : 513;
     o->per = (1 << 24) / size;
-    o->far = (int64_t)2047 * 65536 / o->per;
+    o->far = 2047 * size / 256;
     if (o->far > 32767)
         o->far = 32767;
     for (int i = 0; i < n; i++)
@@ -156,15 +154,13 @@ static int least(int a, int b)
 static int32_t *degree_of(ref_cut_models *m, const options *o, int side, int i)
 {
     const uint32_t degree = ref_degree(o->r, o->ring->vertex[i]);
-    return &m->degree[side][degree < 11 ? degree : 11];
+    return &m->degree[degree < 11 ? degree : 11][side];
 }
 
-/* A side looks at the ring in its own direction: 0 forward, 1 back. */
 static int32_t *states_of(ref_cut_models *m, const options *o, int side, int i)
 {
-    const int step = side == 0 ? 1 : -1;
-    return &m->state[side][state_at(o, i - step)][state_at(o, i)]
-                    [state_at(o, i + step)];
+    return &m->state[state_at(o, i - 1)][state_at(o, i)][state_at(o, i + 1)]
+                    [side];
 }
 
 static bool has_ghost(const option *p)
@@ -186,10 +182,9 @@ static int64_t wing_cost(ref_cut_models *m, const options *o, int side, int i)
 {
     const int64_t reach =
         ref_shift(m->reach[o->ring->open][o->newborn], 4) * o->reach[i];
-    return ref_within(
-        ref_shift(reach + *degree_of(m, o, side, i) + *states_of(m, o, side, i),
-                  10),
-        5000);
+    const int64_t sum =
+        reach + *degree_of(m, o, side, i) + *states_of(m, o, side, i);
+    return ref_within(ref_shift((int32_t)(uint32_t)sum, 10), 5000);
 }
 
 static void set_cost(ref_cut_models *m, const options *o, option *p)
@@ -204,11 +199,12 @@ static void set_cost(ref_cut_models *m, const options *o, option *p)
         p->cost += ref_shift(ref_shift(w[t], 2) * 16 * p->term[t], 16);
 }
 
-/* PART[i], the nearest integer of 32768 x 2^(-i / 16); no power is near a half,
- * so any machine's pow() gives it. */
-static int64_t part_of(int i)
+static int64_t share_of(int64_t e)
 {
-    return (int64_t)floor(32768 * pow(2, -i / 16.0) + 0.5);
+    int64_t u = 65535 - 44 * (e < 1024 ? e : 1024);
+    for (int i = 0; i < 4; i++)
+        u = u * u / 65536;
+    return u / 2;
 }
 
 static int64_t set_shares(options *o)
@@ -218,9 +214,7 @@ static int64_t set_shares(options *o)
         if (o->option[i].cost < lowest)
             lowest = o->option[i].cost;
     for (int i = 0; i < o->count; i++) {
-        const int64_t e = o->option[i].cost - lowest;
-        o->option[i].share =
-            e >= 1024 ? 0 : part_of((int)(e / 4 % 16)) / ((int64_t)1 << e / 64);
+        o->option[i].share = share_of(o->option[i].cost - lowest);
         sum += o->option[i].share;
     }
     return sum;
@@ -233,9 +227,11 @@ static int height(int64_t x)
     return x > 0 ? ref_bits((uint64_t)x * (uint64_t)x) - 1 : 0;
 }
 
-static int read_rank(ref *r, const options *o, int64_t left)
+/* `plain`: the cheapest it is, with good odds. */
+static int read_rank(ref *r, const options *o, int64_t left, bool *plain)
 {
     bool taken[REF_MEMBERS * REF_MEMBERS] = { 0 };
+    *plain = false;
     for (int rank = 0;; rank++) {
         int best = -1;
         for (int i = 0; i < o->count; i++)
@@ -253,8 +249,10 @@ static int read_rank(ref *r, const options *o, int64_t left)
             (int)ref_clamp(height(share) - height(left - share) + 12, 0, 31);
         if (rank > 3)
             REF_SEEN(cut_rank_above_3);
-        if (!ref_bit(&r->in, &r->cut.rank[o->ring->open][least(rank, 3)][k]))
+        if (!ref_bit(&r->in, &r->cut.rank[o->ring->open][least(rank, 3)][k])) {
+            *plain = rank == 0 && k >= 13;
             return best;
+        }
         left -= share;
         taken[best] = true;
     }
@@ -262,9 +260,14 @@ static int read_rank(ref *r, const options *o, int64_t left)
 
 /* ---- learning ----------------------------------------------------------- */
 
-static void change(int32_t *weight, int64_t by, int64_t limit)
+static void change(int32_t *weight, int64_t by)
 {
-    *weight = (int32_t)ref_within(*weight - by, limit);
+    *weight = (int32_t)(uint32_t)(*weight - by); /* modulo 2^32 */
+}
+
+static void change_within(int32_t *weight, int64_t by)
+{
+    *weight = (int32_t)ref_within(*weight - by, 65535);
 }
 
 static void learn_shape(ref_cut_models *m, const options *o,
@@ -276,7 +279,7 @@ static void learn_shape(ref_cut_models *m, const options *o,
             for (int i = 0; i < o->count; i++)
                 if (wings_kind(o, &o->option[i]) == g)
                     sum += error[i] * o->option[i].term[t];
-            change(&m->shape[g][o->newborn][t], sum / 512, 65535);
+            change_within(&m->shape[g][o->newborn][t], sum / 512);
         }
 }
 
@@ -294,11 +297,11 @@ static void learn_spans(ref_cut_models *m, const options *o,
             any = p;
         }
         if (any)
-            change(span_of(m, o, any), sum, 1 << 26);
+            change(span_of(m, o, any), sum);
     }
     for (int i = 0; i < o->count; i++)
         if (has_ghost(&o->option[i]))
-            change(span_of(m, o, &o->option[i]), error[i], 1 << 26);
+            change(span_of(m, o, &o->option[i]), error[i]);
 }
 
 static void learn_wings(ref_cut_models *m, const options *o,
@@ -313,11 +316,11 @@ static void learn_wings(ref_cut_models *m, const options *o,
                 if ((side == 0 ? cut->first : cut->end) == i)
                     sum += error[k];
             }
-            change(degree_of(m, o, side, i), sum, 1 << 26);
-            change(states_of(m, o, side, i), sum, 1 << 26);
+            change(degree_of(m, o, side, i), sum);
+            change(states_of(m, o, side, i), sum);
             reach += sum * o->reach[i];
         }
-    change(&m->reach[o->ring->open][o->newborn], reach / 512, 65535);
+    change_within(&m->reach[o->ring->open][o->newborn], reach / 512);
 }
 
 static void learn(ref_cut_models *m, const options *o, int chosen, int64_t sum)
@@ -347,7 +350,11 @@ ref_cut ref_read_cut(ref *r, uint32_t v, const ref_ring *ring)
     if (o.newborn)
         REF_SEEN(cut_drift);
     const int64_t sum = set_shares(&o);
-    const int chosen = read_rank(r, &o, sum);
-    learn(&r->cut, &o, chosen, sum);
+    bool plain;
+    const int chosen = read_rank(r, &o, sum, &plain);
+    if (plain)
+        REF_SEEN(cut_plain);
+    else
+        learn(&r->cut, &o, chosen, sum);
     return o.option[chosen].cut;
 }

@@ -195,7 +195,7 @@ static void place_child(ref *r, uint32_t v, uint32_t u)
         sum = ref_add(sum, r->vertex[ring.vertex[i]].at);
         count++;
     }
-    r->vertex[u].at = ref_over(sum, count);
+    r->vertex[u].at = ref_vshare(sum, count);
 }
 
 static ref_fresh start_split(ref *r, uint32_t v)

@@ -14,15 +14,15 @@ typedef struct frame {
     int64_t l[REF_MEMBERS];
 } frame;
 
-static int64_t share(int64_t v, int64_t k)
+int64_t ref_share(int64_t v, int64_t k)
 {
     return ref_shift(v * (((int64_t)1 << 32) / k + 1), 32);
 }
 
-static ref_vec vshare(ref_vec v, int64_t k)
+ref_vec ref_vshare(ref_vec v, int64_t k)
 {
     for (int i = 0; i < 3; i++)
-        v.c[i] = share(v.c[i], k);
+        v.c[i] = ref_share(v.c[i], k);
     return v;
 }
 
@@ -75,7 +75,7 @@ static void set_edges(frame *m)
         m->e[i] = ref_vscale(m->e[i], m->s);
         sum = ref_add(sum, m->e[i]);
     }
-    m->mean = vshare(sum, m->n);
+    m->mean = ref_vshare(sum, m->n);
     for (int i = 0; i < m->n; i++) {
         m->d[i] = ref_sub(m->e[i], m->mean);
         m->l[i] = ref_len(m->d[i]);
@@ -113,7 +113,7 @@ static void set_contexts(const frame *m, ref_prediction *p,
         p->unknown += z >= provisional && z != m->y;
         p->irregular += ref_degree(m->r, z) != 6;
     }
-    const int64_t S = share(lengths, m->n), H = share(heights, m->n);
+    const int64_t S = ref_share(lengths, m->n), H = ref_share(heights, m->n);
     const int64_t size = ref_scale(S, 4 - m->s), q = 256 * H / (S + 1);
     const int rough = ref_bits((uint64_t)q * (uint64_t)q);
     p->size = size > 16 ? size : 16;
@@ -133,19 +133,26 @@ static ref_vec half_sum(const frame *m, int64_t a, int64_t b)
     return ref_sub(ref_vshift(ref_add(m->e[a], m->e[b]), 1), m->mean);
 }
 
+/* The sum of z's neighbours. */
+static ref_vec neighbours(const ref *r, uint32_t z)
+{
+    ref_vec sum = { 0 };
+    for (int fan = 0; ref_fan(r, z, fan) != REF_NONE; fan++) {
+        const ref_ring ring = ref_ring_from(r, ref_fan(r, z, fan));
+        for (int c = 0; c < ring.count; c++)
+            sum = ref_add(sum, r->vertex[ring.vertex[c]].at);
+    }
+    return sum;
+}
+
 /* How z's other neighbours lie around z. */
 static ref_vec bend_at(const frame *m, int i, int64_t k)
 {
-    const uint32_t z = m->ring->vertex[i];
-    ref_vec sum = ref_times(m->r->vertex[m->x].at, -1);
-    for (int fan = 0; ref_fan(m->r, z, fan) != REF_NONE; fan++) {
-        const ref_ring ring = ref_ring_from(m->r, ref_fan(m->r, z, fan));
-        for (int c = 0; c < ring.count; c++)
-            sum = ref_add(sum, m->r->vertex[ring.vertex[c]].at);
-    }
+    ref_vec sum = neighbours(m->r, m->ring->vertex[i]);
+    sum = ref_sub(sum, m->r->vertex[m->x].at);
     sum = ref_sub(sum, ref_times(m->q, k));
     sum = ref_vwithin(ref_vscale(sum, m->s), 1 << 22);
-    return ref_sub(vshare(sum, k), m->e[i]);
+    return ref_sub(ref_vshare(sum, k), m->e[i]);
 }
 
 static ref_vec bend(const frame *m)
@@ -162,7 +169,7 @@ static ref_vec bend(const frame *m)
         sum = ref_add(sum, bend_at(m, i, k));
         count++;
     }
-    return count > 0 ? vshare(sum, count) : sum;
+    return count > 0 ? ref_vshare(sum, count) : sum;
 }
 
 static ref_vec centre(const int64_t *g, const ref_vec *v, int count,
@@ -312,25 +319,38 @@ static int64_t smaller(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-void ref_take_in(ref_fit *fit, int which, const ref_vec *f, ref_vec y,
-                 int64_t weight, int64_t pull)
+/* W anew, one after the other. */
+static void weigh_again(ref_fit *fit, int which, int64_t pull)
 {
     int64_t(*m)[REF_TERMS] = fit->m[which];
-    int64_t *b = fit->b[which], *w = fit->w[which];
-    for (int t = 0; t < REF_TERMS; t++) {
-        for (int j = 0; j < REF_TERMS; j++)
-            m[t][j] +=
-                weight * ref_dot(f[t], f[j]) - ref_shift(m[t][j], 7);
-        b[t] += weight * ref_dot(f[t], y) - ref_shift(b[t], 7);
-    }
+    const int64_t *b = fit->b[which], *start = fit->start[which];
+    int64_t *w = fit->w[which];
     for (int t = 0; t < REF_TERMS; t++) {
         int64_t rest = b[t];
         for (int j = 0; j < REF_TERMS; j++)
             rest -= ref_shift(m[t][j], 16) * w[j];
-        rest += ref_shift(pull, 16) * (fit->start[which][t] - w[t]);
+        rest += ref_shift(pull, 16) * (start[t] - w[t]);
         w[t] = ref_within(
             w[t] + rest / (ref_shift(m[t][t] + pull, 16) + 1), 1 << 19);
     }
+}
+
+void ref_take_in(ref_fit *fit, int which, const ref_vec *f, ref_vec y,
+                 int64_t weight, int64_t pull)
+{
+    const bool round = ++fit->samples[which] % 4 == 0;
+    for (int t = 0; t < REF_TERMS; t++) {
+        int64_t *b = &fit->b[which][t];
+        *b += weight * ref_dot(f[t], y);
+        *b -= round ? ref_shift(*b, 5) : 0;
+        for (int j = 0; j < REF_TERMS; j++) {
+            int64_t *m = &fit->m[which][t][j];
+            *m += weight * ref_dot(f[t], f[j]);
+            *m -= round ? ref_shift(*m, 5) : 0;
+        }
+    }
+    if (round)
+        weigh_again(fit, which, pull);
 }
 
 static int64_t squared(const ref_prediction *p, int64_t v)
@@ -413,15 +433,49 @@ static void read_parent(ref *r, uint32_t u)
     ref_learn(r, &p, r->vertex[v].at);
 }
 
+/* Axis k of a better provisional position for u. */
+static int64_t guess(const ref *r, uint32_t u, const ref_ring *ring, int k)
+{
+    int64_t a = 0, d = 0, others = 0;
+    for (int i = 0; i < ring->count; i++) {
+        const uint32_t z = ring->vertex[i];
+        const int64_t more = (int64_t)ref_degree(r, z) - 1;
+        a += r->vertex[z].at.c[k];
+        if (more >= 48) {
+            REF_SEEN(guess_left_out);
+            continue;
+        }
+        d += neighbours(r, z).c[k] - r->vertex[u].at.c[k] -
+             more * r->vertex[z].at.c[k];
+        others += more;
+    }
+    d = (int32_t)(uint32_t)d; /* modulo 2^32 */
+    const int64_t by = others > 0 ? 5 * ((int64_t)1 << 29) / others : 0;
+    const int64_t mean = a * (((int64_t)1 << 32) / ring->count + 1);
+    const uint32_t parent = r->split[u - r->base_vertices].parent;
+    const int64_t v = ((int64_t)1 << 32) * r->vertex[parent].at.c[k];
+    const int64_t c = r->header.moving ? ref_shift(mean + 3 * v, 2)
+                                       : mean - d * by;
+    return ref_shift(c + ((int64_t)1 << 31), 32);
+}
+
+static void guess_child(ref *r, uint32_t u)
+{
+    const ref_ring ring = ref_ring_of(r, u);
+    ref_vec at;
+    if (ring.large) {
+        REF_SEEN(guess_large_ring);
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        at.c[k] = ref_clamp(guess(r, u, &ring, k), 0, r->header.bounds[k]);
+    r->vertex[u].at = at;
+}
+
 void ref_read_positions(ref *r)
 {
-    const int kind = r->header.moving ? 1 : 0;
-    for (uint32_t u = r->block_vertex; u < r->vertex_count; u++) {
-        const uint32_t v = r->split[u - r->base_vertices].parent;
-        const ref_prediction p = ref_predict(r, u, v, r->vertex[v].at, kind,
-                                             r->block_vertex);
-        r->vertex[u].at = ref_over(p.position, 16);
-    }
+    for (uint32_t u = r->block_vertex; u < r->vertex_count; u++)
+        guess_child(r, u);
     for (uint32_t u = r->block_vertex; u < r->vertex_count; u++) {
         ref_split *split = &r->split[u - r->base_vertices];
         read_child(r, u);

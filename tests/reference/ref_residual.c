@@ -5,8 +5,7 @@
 typedef struct axis_state {
     int axis[3]; /* in coding order */
     int64_t n[3], d[3];
-    int64_t s, c, rho, kappa;
-    int64_t V, B; /* of axis 1 */
+    int64_t s, rho, left, lean, V;
 } axis_state;
 
 static int64_t absolute(int64_t a)
@@ -32,7 +31,7 @@ static ref_expected *across_of(ref_residual_models *m,
 
 static int64_t expected(const ref_expected *e, int64_t size)
 {
-    return ref_clamp(e->value * size / 4096, 1, 1 << 24);
+    return ref_clamp(e->value * size / 4096, 1, 1 << 22);
 }
 
 static void order_axes(axis_state *a, ref_vec normal)
@@ -51,38 +50,39 @@ static void order_axes(axis_state *a, ref_vec normal)
 
 static void set_ellipsoid(axis_state *a, const ref_prediction *p)
 {
-    a->s = p->along;
-    a->c = p->across < 4 * a->s ? p->across : 4 * a->s;
-    const int64_t q = at_least(a->c * 16384 / a->s, 128);
+    const int64_t s = p->along;
+    const int64_t c = ref_clamp(p->across, s / 128 + 1, 4 * s);
+    const int64_t q = c * 16384 / s;
+    a->s = s;
+    a->left = c * c;
     a->rho = 16384 - q * q / 16384;
-    a->kappa = (int64_t)16384 * 16384 / q * 16384 / q - 16384;
-    if (a->n[2] == 0)
-        a->rho = a->kappa = 0;
+    if (a->n[2] == 0) {
+        a->left = s * s;
+        a->rho = 0;
+    }
 }
 
 /* Mean, less the position, and square of axis k, given those before. */
 static void expect(axis_state *a, int k, int64_t *mean, int64_t *square)
 {
-    const int64_t *n = a->n, *d = a->d;
-    if (k == 0) {
-        a->V = at_least(
-            16384 - a->rho * n[0] / 16384 * n[0] / 16384, 4);
-        *mean = 0;
-        *square = a->s * a->s * a->V / 16384;
-    } else if (k == 1) {
-        const int64_t B = -(a->rho * n[0] / 16384 * n[1] / 16384);
-        const int64_t U = at_least(16384 -
-                                       a->rho * n[1] / 16384 * n[1] / 16384 -
-                                       B * B / a->V,
-                                   4);
-        *mean = B * d[0] / a->V;
-        *square = a->s * a->s * U / 16384;
-    } else {
-        const int64_t t = (n[0] * d[0] + n[1] * d[1]) / 16384;
-        const int64_t P = 16384 + a->kappa * n[2] / 16384 * n[2] / 16384;
-        *mean = -(a->kappa * n[2] / 16384 * t) / P;
-        *square = a->s * a->s * 16384 / P;
-    }
+    const int64_t n = a->n[k];
+    *mean = -ref_shift(a->lean * n, 14);
+    *square = a->left;
+    if (k == 2)
+        return;
+    a->V = at_least(16384 - ref_shift(ref_shift(a->rho * n, 14) * n, 14), 4096);
+    *square = a->s * a->s * a->V / 16384;
+}
+
+/* Axis k was `off` its mean. */
+static void condition(axis_state *a, int k, int64_t off)
+{
+    if (k == 2)
+        return;
+    const int64_t per = (1 << 28) / a->V;
+    a->rho = ref_shift(a->rho * per, 14);
+    a->left = ref_shift(a->left * per, 14);
+    a->lean += ref_shift(ref_shift(a->rho * a->n[k], 14) * off, 14);
 }
 
 static int64_t read_size(ref *r, const ref_near *at)
@@ -142,12 +142,12 @@ int ref_how_far(int64_t coordinate, const ref_near *at)
 
 static void adapt(ref_expected *e, int64_t seen, int64_t size)
 {
-    int64_t ratio = seen * 4096 / size;
-    if (ratio > 64 * 4096) {
+    if (seen > 64 * size)
         REF_SEEN(ratio_limited);
-        ratio = 64 * 4096;
-    }
-    e->value += (ratio - e->value) * 2 / (2 * e->uses + 5);
+    seen = seen < 64 * size ? seen : 64 * size;
+    const int64_t ratio = seen * (((int64_t)1 << 32) / size) >> 20;
+    const int64_t rate = 131072 / (2 * e->uses + 5);
+    e->value += (ratio - e->value) * rate / 65536;
     e->uses = e->uses < 60 ? e->uses + 1 : 60;
 }
 
@@ -158,9 +158,9 @@ static void adapt_both(ref_residual_models *m, const ref_prediction *p,
     int64_t dot = 0;
     for (int k = 0; k < 3; k++)
         dot += a->d[k] * a->n[k];
-    const int64_t h = dot / 16384;
+    const int64_t h = ref_shift(dot, 14);
     for (int k = 0; k < 3; k++)
-        f.c[k] = a->d[k] - h * a->n[k] / 16384;
+        f.c[k] = a->d[k] - ref_shift(h * a->n[k], 14);
     adapt(across_of(m, p), absolute(h), p->size);
     adapt(along_of(m, p), ref_len(f) * 181 / 256, p->size);
 }
@@ -189,6 +189,7 @@ ref_vec ref_read_residual(ref *r, ref_prediction *p)
         far = ref_how_far(c, &at_axis);
         a.d[k] = 16 * c - p->position.c[axis];
         at.c[axis] = c;
+        condition(&a, k, 16 * c - at_axis.mean);
     }
     adapt_both(m, p, &a);
     return at;

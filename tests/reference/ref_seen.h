@@ -22,7 +22,6 @@
     X("5.3", attribute_colour)     \
     X("5.3", attribute_generic)    \
     X("6.1", byte_behind_end)      \
-    X("6.1", p_limited)            \
     X("6.1", number_raw)           \
     X("6.2", seed)                 \
     X("6.2", seed_again)           \
@@ -53,6 +52,9 @@
     X("6.4", cut_rank_above_3)     \
     X("6.4", cut_only_one_left)    \
     X("6.4", cut_share_0)          \
+    X("6.4", cut_plain)            \
+    X("6.5", guess_large_ring)     \
+    X("6.5", guess_left_out)       \
     X("6.5", predict_large_ring)   \
     X("6.5", normal_0)             \
     X("6.5", bend_left_out)        \

@@ -52,8 +52,8 @@ static void add(sums *s, double value, double weight)
 static void add_bits(sums *s, const pmesh_bit *bits, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        const double p = (bits[i].slow + 1) / 65537.0;
-        add(&s[i], log(p / (1 - p)), bits[i].uses);
+        const double p = (pmesh_bit_odds(&bits[i]) + 1) / 65538.0;
+        add(&s[i], log(p / (1 - p)), pmesh_bit_uses(&bits[i]));
     }
 }
 

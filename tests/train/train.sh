@@ -10,7 +10,7 @@ trap 'rm -f "$new"' EXIT
 "$TRAIN" "$@" >"$new"
 cp "$new" format/tables.c
 
-dimensions='shape [3][2][2] reach [2][2] degree [2][12] state [2][5][5][5]
+dimensions='shape [3][2][2] reach [2][2] degree [12][2] state [5][5][5][2]
     span [2][14][10] predict [3][9][3][7][2] along [2][9][3][5]
     across [2][14][3] flag [1680] rank [2][4][32] residual [60][20]
     low [60][3]'

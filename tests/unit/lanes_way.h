@@ -33,11 +33,16 @@ static int32_t *put_short(int32_t *out, const lanes in[4])
     out = put_lanes(out, lanes_size(a));
     out = put_lanes(out, lanes_high(a, b));
     out = put_lanes(out, lanes_high_unsigned(a, b));
+    out = put_lanes(out, lanes_half_unsigned(a));
+    out = put_lanes(out, lanes_times(a, 44));
+    out = put_lanes(out, lanes_times(a, -32767));
     for (int by = 0; by < 16; by += 5) {
         out = put_lanes(out, lanes_left(a, by));
         out = put_lanes(out, lanes_right(a, by));
     }
     *out++ = lanes_least(a);
+    *out++ = lanes_find(a, (int16_t)lanes_least(a));
+    *out++ = lanes_find(b, 1); /* of some it is one of many, most have none */
     *out++ = lanes_total(a);
     return out;
 }

@@ -287,6 +287,20 @@ TEST(topology_joins_vertices_of_equal_position)
     CHECK(r.misoriented_edges == 0);
 }
 
+TEST(topology_counts_folds)
+{
+    /* Flaps on one side of the edge 0 1 and the other: up to 29 and 31 degrees
+     * short of lying on the first face. */
+    const double p[] = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0.66, 0, 1, 0.5 };
+    const uint32_t open[] = { 0, 1, 2, 1, 0, 3 };
+    const uint32_t folded[] = { 0, 1, 2, 1, 0, 4 };
+    const uint32_t turned[] = { 0, 1, 2, 0, 1, 4 }; /* runs the wrong way */
+
+    CHECK(count(make_mesh(p, 5, open, 2)).folds == 0);
+    CHECK(count(make_mesh(p, 5, folded, 2)).folds == 1);
+    CHECK(count(make_mesh(p, 5, turned, 2)).folds == 0);
+}
+
 TEST(topology_counts_boundaries_fins_and_pieces)
 {
     const double p[] = { 0, 0, 0,  1, 0, 0, 0, 1, 0, 0,  0,

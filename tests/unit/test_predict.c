@@ -110,9 +110,10 @@ TEST(bit_models_start_from_tables)
     static const uint8_t table[3] = { 0, 200, 1 };
     pmesh_bit bits[3];
     pmesh_bits_start(bits, 3, table);
-    CHECK(bits[0].fast == 32768 && bits[0].uses == 0);
-    CHECK(bits[1].slow == 200 * 256 + 128 && bits[1].uses == 12);
-    CHECK(bits[2].fast == 384);
+    CHECK(pmesh_bit_odds(&bits[0]) == 32768 && pmesh_bit_uses(&bits[0]) == 0);
+    CHECK(pmesh_bit_odds(&bits[1]) == 200 * 256 + 128);
+    CHECK(pmesh_bit_uses(&bits[1]) == 12);
+    CHECK(pmesh_bit_odds(&bits[2]) == 384);
 }
 
 TEST(quantiles_are_upper_ends_of_bins)

@@ -365,3 +365,178 @@ TEST(attributes_out_of_range_are_refused)
     CHECK(lods_run(l) == PMESH_OK);
     lods_free(l);
 }
+
+/* ---- other attributes, and maps ------------------------------------------ */
+
+/* Ambient occlusion: darker in one corner. */
+static void occlusion_at(const double p[3], float out[])
+{
+    const double x = p[0] - 6, y = p[1] - 6;
+
+    out[0] = (float)(1 - 0.8 * exp(-(x * x + y * y) / 20));
+}
+
+/* Of two bones, the one taking over from the other halfway. */
+static void bones_at(const double p[3], float out[])
+{
+    const double t = (p[0] - 9) / 6;
+
+    out[0] = (float)(t < 0 ? 1 : t > 1 ? 0 : 1 - t);
+    out[1] = 1 - out[0];
+}
+
+static void four_at(const double p[3], float out[])
+{
+    for (int i = 0; i < 4; i++)
+        out[i] = (float)(100 * sin(0.1 * (i + 1) * p[i % 2]));
+}
+
+/* Of all components together. */
+static double whole_error(const lods *l, size_t i, field f)
+{
+    double sum = 0;
+
+    for (unsigned k = 0; k < l->attributes[i].components; k++) {
+        const double error = attribute_error(l, i, k, f);
+        sum += error * error;
+    }
+    return sqrt(sum);
+}
+
+TEST(joint_simplification_takes_channels_of_any_meaning_and_width)
+{
+    static const struct {
+        uint8_t components;
+        field f;
+        float weight;
+    } kinds[] = { { 1, occlusion_at, 0.1f },
+                  { 2, bones_at, 0.1f },
+                  { 3, color_at, 0.1f },
+                  { 4, four_at, 0.001f } };
+
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        double error[2];
+        for (int joint = 0; joint < 2; joint++) {
+            lods *l = lods_flat(SIZE);
+            add_field(l, PMESH_GENERIC, kinds[k].components, kinds[k].f,
+                      joint ? kinds[k].weight : 0);
+            l->options.faces = 200;
+            CHECK(lods_run(l) == PMESH_OK);
+            error[joint] = whole_error(l, 0, kinds[k].f);
+            lods_free(l);
+        }
+        CHECK(error[1] < 0.5 * error[0]);
+    }
+}
+
+/* As many as there may be, all at once: together, by their weights, they are
+ * better kept than without, and in the range of the input. */
+TEST(joint_simplification_takes_eight_channels_at_once)
+{
+    static const struct {
+        uint8_t components;
+        field f;
+        float weight;
+    } kinds[PMESH_MAX_ATTRIBUTES] = {
+        { 1, occlusion_at, 0.1f }, { 2, bones_at, 0.1f },
+        { 3, color_at, 0.1f },     { 2, texture_at, 0.1f },
+        { 1, occlusion_at, 0.1f }, { 2, bones_at, 0.1f },
+        { 3, color_at, 0.1f },     { 4, four_at, 0.0003f }
+    };
+    double error[2] = { 0, 0 };
+
+    for (int joint = 0; joint < 2; joint++) {
+        lods *l = lods_flat(SIZE);
+        for (size_t k = 0; k < PMESH_MAX_ATTRIBUTES; k++)
+            add_field(l, PMESH_GENERIC, kinds[k].components, kinds[k].f,
+                      joint ? kinds[k].weight : 0);
+        l->options.faces = 300;
+        CHECK(lods_run(l) == PMESH_OK);
+        for (size_t k = 0; k < PMESH_MAX_ATTRIBUTES; k++)
+            error[joint] +=
+                pow((double)kinds[k].weight * whole_error(l, k, kinds[k].f), 2);
+        for (size_t c = 0; c < 3 * l->out.face_count; c++) {
+            const float *w =
+                &l->out.attribute_values[1][2 * (size_t)l->out.indices[c]];
+            CHECK(w[0] >= 0 && w[0] <= 1 && w[1] >= 0 && w[1] <= 1);
+        }
+        lods_free(l);
+    }
+    CHECK(error[1] < 0.5 * error[0]);
+}
+
+/* A picture looked up at the texture coordinates of a place. */
+static double picture(double u, double v)
+{
+    return 0.5 + 0.25 * sin(40 * u) + 0.25 * cos(37 * v);
+}
+
+/* Root mean square over the faces' middles, which look their pictures up at
+ * the means of their corners' coordinates. */
+static double picture_error(const lods *l, const float *uv)
+{
+    double sum = 0, weight = 0;
+
+    for (size_t f = 0; f < l->out.face_count; f++) {
+        double at[2] = { 0, 0 }, middle[3] = { 0, 0, 0 }, n[3];
+        float want[2];
+        for (size_t k = 0; k < 3; k++) {
+            const size_t v = l->out.indices[3 * f + k];
+            for (size_t i = 0; i < 2; i++)
+                at[i] += (double)uv[2 * v + i] / 3;
+            for (size_t i = 0; i < 3; i++)
+                middle[i] += l->out.positions[3 * v + i] / 3;
+        }
+        texture_at(middle, want);
+        lods_normal(l, f, n);
+        const double d = picture(at[0], at[1]) -
+                         picture((double)want[0], (double)want[1]);
+        sum += fabs(n[2]) * d * d;
+        weight += fabs(n[2]);
+    }
+    return sqrt(sum / weight);
+}
+
+/* The two figures of the paper: the same places with coordinates that were
+ * there before, and xyzst with new ones. */
+TEST(new_texture_coordinates_draw_a_better_picture_than_old_ones)
+{
+    for (size_t faces = 400; faces >= 100; faces /= 2) {
+        lods *old = lods_flat(SIZE), *joint = lods_flat(SIZE);
+        add_field(joint, PMESH_TEXCOORD, 2, texture_at, 0.1f);
+        add_field(old, PMESH_TEXCOORD, 2, texture_at, 0);
+        old->options.faces = joint->options.faces = faces;
+        CHECK(lods_run(old) == PMESH_OK && lods_run(joint) == PMESH_OK);
+        const double by_joint =
+            picture_error(joint, joint->out.attribute_values[0]);
+        /* Interpolated, and those of the input vertex that each was. */
+        CHECK(by_joint < picture_error(old, old->out.attribute_values[0]));
+        CHECK(by_joint < picture_error(old, old->attributes[0].values));
+        lods_free(old);
+        lods_free(joint);
+    }
+}
+
+static void picture_at(const double p[3], float out[])
+{
+    float uv[2];
+
+    texture_at(p, uv);
+    out[0] = (float)picture((double)uv[0], (double)uv[1]);
+}
+
+/* What pmesh_simplify.h advises: where a colour varies within what becomes one
+ * triangle, a map keeps it and vertices cannot. */
+TEST(a_map_keeps_colours_that_vertices_cannot)
+{
+    lods *colors = lods_flat(SIZE), *map = lods_flat(SIZE);
+
+    add_field(colors, PMESH_GENERIC, 1, picture_at, 0.1f);
+    add_field(map, PMESH_TEXCOORD, 2, texture_at, 0.1f);
+    colors->options.faces = map->options.faces = 100;
+    CHECK(lods_run(colors) == PMESH_OK && lods_run(map) == PMESH_OK);
+    CHECK(picture_error(map, map->out.attribute_values[0]) <
+          0.5 * attribute_error(colors, 0, 0, picture_at));
+    lods_free(colors);
+    lods_free(map);
+}

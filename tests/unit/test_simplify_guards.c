@@ -64,7 +64,7 @@ TEST(simplify_turns_no_face_further_in_all_than_it_may)
 {
     lods *l = torus(24);
 
-    l->options.faces = l->in.face_count / 20;
+    l->options.faces = l->in.face_count / 40;
     CHECK(lods_run(l) == PMESH_OK);
     const double free_turn = least_cosine(l);
     l->options.turn_cosine = 0.8;

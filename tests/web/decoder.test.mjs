@@ -219,3 +219,15 @@ test("materials, morph, bounds and rays", async () => {
     const from = decoder.morph({ faces: 1 });
     assert.equal(from.length, 3 * decoder.vertexCount);
 });
+
+test("a measured file tells how far its levels are", async () => {
+    for (const name of names) {
+        const decoder = await Decoder.create();
+        decoder.feed(read(name));
+        const { measured, levels } = decoder.header;
+        assert.equal(measured, name === "measured.pmesh");
+        for (const { error, rms, furthest } of levels.slice(0, -1))
+            assert.ok(measured ? error > 0 && rms > 0 && rms <= furthest
+                : rms === 0 && furthest === 0);
+    }
+});

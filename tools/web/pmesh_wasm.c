@@ -148,14 +148,15 @@ EXPORT(info) const double *info(mesh *m)
         h.grid.origin[1], h.grid.origin[2], h.bounds[0], h.bounds[1],
         h.bounds[2], h.faces, h.mesh_vertices, h.vertices, h.base_faces,
         h.base_mesh_vertices, h.base_vertices, h.material_count,
-        h.attribute_count, h.level_count
+        h.measured, h.attribute_count, h.level_count
     };
     double *at = put(list, fixed, sizeof fixed / sizeof *fixed);
     for (uint32_t i = 0; i < h.level_count; i++) {
         const pmesh_level *l = &h.levels[i];
         const double level[] = { (double)l->bytes, l->faces, l->mesh_vertices,
-                                 l->vertices, (double)l->error };
-        at = put(at, level, 5);
+                                 l->vertices, (double)l->error, (double)l->rms,
+                                 (double)l->furthest };
+        at = put(at, level, 7);
     }
     for (uint32_t i = 0; i < h.attribute_count; i++) {
         const pmesh_attribute *a = &h.attributes[i];

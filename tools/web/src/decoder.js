@@ -258,6 +258,7 @@ function readHeader(list) {
         baseMeshVertices: next(),
         baseVertices: next(),
         materialCount: next(),
+        measured: next() !== 0,
     };
     const attributeCount = next(), levelCount = next();
     header.levels = Array.from({ length: levelCount }, () => ({
@@ -266,6 +267,8 @@ function readHeader(list) {
         meshVertices: next(),
         vertices: next(),
         error: next(),
+        rms: next(),
+        furthest: next(),
     }));
     header.attributes = Array.from({ length: attributeCount }, () => ({
         kind: KINDS[next()],

@@ -32,6 +32,10 @@ export interface Level {
     meshVertices: number;
     vertices: number;
     error: number;
+    /** Of a measured file, else 0: distance to the full mesh, root mean square
+     * and largest. */
+    rms: number;
+    furthest: number;
 }
 
 export interface Attribute {
@@ -61,6 +65,7 @@ export interface Header {
     baseMeshVertices: number;
     baseVertices: number;
     materialCount: number;
+    measured: boolean;
     levels: Level[];
     attributes: Attribute[];
 }
