@@ -252,7 +252,7 @@ void taker::code_primitive(gltf_document &to, const gltf_primitive &p,
     for (uint32_t i = 1; i < p.set_count; i++)
         gltf_list(record, "targets").push_back(set(p, stream.channels, i));
     for (const char *member : { "indices", "mode", "targets" })
-        to.erase(member);
+        gltf_erase(to, member);
     to["attributes"] = gltf_document::object();
     gltf_erase_extension(to, "KHR_draco_mesh_compression");
     gltf_object(to, "extensions")[GLTF_PROGRESSIVE] = std::move(record);
@@ -326,7 +326,7 @@ void taker::images()
             gltf_document &place = doc["bufferViews"][view];
             place["buffer"] = resource;
             place["byteLength"] = bytes.size();
-            place.erase("byteOffset");
+            gltf_erase(place, "byteOffset");
             gltf_erase_extension(place, "EXT_meshopt_compression");
             parts.resources.push_back(std::move(bytes));
             continue;
@@ -356,7 +356,7 @@ void taker::images()
                        ok ? "of an unknown type" : error.what);
             continue;
         }
-        to.erase("uri");
+        gltf_erase(to, "uri");
         to["bufferView"] = add_view(resource, bytes.size());
         to["mimeType"] = mime;
         if (!to.contains("name") && name.compare(0, 5, "data:") != 0)
@@ -409,7 +409,7 @@ void taker::free_places()
             doc[list.name][i] = gltf_document::object();
         }
         if (size == 0)
-            doc.erase(list.name);
+            gltf_erase(doc, list.name);
         root[list.name] = std::move(numbers);
     }
     gltf_object(doc, "extensions")[GLTF_PROGRESSIVE] = std::move(root);
@@ -431,7 +431,7 @@ void taker::extensions()
                 left.push_back(name);
         }
         if (left.empty())
-            doc.erase(list);
+            gltf_erase(doc, list);
         else
             doc[list] = std::move(left);
     }
@@ -454,7 +454,7 @@ gltf_parts taker::take()
     images();
     free_places();
     extensions();
-    doc.erase("buffers");
+    gltf_erase(doc, "buffers");
     for (const gltf_bytes &bytes : parts.resources)
         gltf_list(doc, "buffers").push_back({ { "byteLength", bytes.size() } });
     parts.document = doc.dump();
@@ -463,13 +463,24 @@ gltf_parts taker::take()
 
 } // namespace
 
+void gltf_erase(gltf_document &object, const char *member)
+{
+    if (!object.is_object() || !object.contains(member))
+        return;
+    gltf_document rest = gltf_document::object();
+    for (auto &item : object.items())
+        if (item.key() != member)
+            rest[item.key()] = std::move(item.value());
+    object = std::move(rest);
+}
+
 void gltf_erase_extension(gltf_document &object, const char *name)
 {
     if (!object.contains("extensions"))
         return;
-    object["extensions"].erase(name);
+    gltf_erase(object["extensions"], name);
     if (object["extensions"].empty())
-        object.erase("extensions");
+        gltf_erase(object, "extensions");
 }
 
 gltf_parts gltf_take_apart(const gltf_source &source, const gltf_model &model,

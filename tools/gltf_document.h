@@ -38,7 +38,12 @@ gltf_parts gltf_take_apart(const gltf_source &source, const gltf_model &model,
 /* The largest scale of the instances of each mesh, over all scenes. */
 std::vector<double> gltf_scales(const gltf_source &source);
 
-/* Erases a member, and what holds it if nothing else is left there. */
+/* Erases a member if it is there. Not nlohmann's erase(), which moves the
+ * members behind it in place and copies their names meanwhile: if memory runs
+ * out then, what it leaves cannot even be destroyed. */
+void gltf_erase(gltf_document &object, const char *member);
+
+/* The same of an extension, and of what holds it if nothing else is left. */
 void gltf_erase_extension(gltf_document &object, const char *name);
 
 #endif

@@ -82,9 +82,9 @@ void scene_writer::chain_node(size_t node, const std::vector<size_t> &chain)
         for (const char *member : { "skin", "weights" })
             if (nodes[node].contains(member)) {
                 inner[member] = nodes[node][member];
-                nodes[node].erase(member);
+                gltf_erase(nodes[node], member);
             }
-        nodes[node].erase("mesh");
+        gltf_erase(nodes[node], "mesh");
         gltf_list(nodes[node], "children").push_back(nodes.size());
         node = nodes.size();
         nodes.push_back(std::move(inner));

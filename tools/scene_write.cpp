@@ -274,7 +274,7 @@ void scene_writer::drop_animations()
                     used.resize(at + 1);
                 used[at] = true;
             }
-    doc.erase("animations");
+    gltf_erase(doc, "animations");
     for (size_t i = 0; i < used.size() && i < doc["accessors"].size(); i++)
         if (used[i])
             doc["accessors"][i] = { { "componentType", 5126 },
