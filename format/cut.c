@@ -11,14 +11,12 @@ enum {
     MAX_ROWS = PMESH_MAX_RING + 1,
     ROOM = PMESH_MAX_RING + LANES,
     MEMBERS = 2 * PMESH_MAX_RING + 2 * LANES,
-
     LARGEST_BITS = 14, /* of the largest coordinate */
     DRIFT_LIMIT = 1 << 13,
     LEAST_SIZE = 513,
     TERM_LIMIT = 2047,  /* terms have 1/256 of the ring's size, squared */
     PLACE_LIMIT = 5000, /* of what makes up a cost besides, in 1/64 bit */
     TAKEN = INT16_MAX,  /* costs are below it by twice NO_SHARE at least */
-
     NO_SHARE = 64 * 16, /* so far above the least cost a share is 0 */
     GOOD_ODDS = 13,     /* 7 : 5 or better */
     ERROR_ONE = 4096,
@@ -32,8 +30,7 @@ typedef enum wing_set { BOTH, A_ONLY, B_ONLY } wing_set;
  * member i. Those with one wing, at member i, differ in that. Lanes from `live`
  * on are none, and TAKEN. */
 typedef struct row {
-    uint32_t lane, live;
-    uint32_t span;
+    uint32_t lane, live, span;
     wing_set wings;
 } row;
 
@@ -109,8 +106,7 @@ static void place_drift(cutter *s, const int64_t drift[3], int shift)
     }
 }
 
-/* The members relative to v, then zeros; returns the bitwise or of all sizes.
- */
+/* The members relative to v, then zeros; returns the or of all sizes. */
 static uint32_t gather(cutter *s, const pmesh_codec *c, uint32_t v,
                        const pmesh_ring *ring, quads d[ROOM], int64_t drift[3])
 {
@@ -261,8 +257,7 @@ static void weigh_wings(cutter *s, const pmesh_codec *c, const pmesh_ring *ring)
     }
 }
 
-/* ---- options and their costs ----------------------------------------------
- */
+/* ---- options and their costs --------------------------------------------- */
 
 static int32_t *span_weight(const cutter *s, bool ghost, uint32_t span)
 {
@@ -306,8 +301,7 @@ static void make_common(const cutter *s, bool ghost, common *o)
     o->drop = (int)s->drop;
 }
 
-/* Sizes of both rings, u's with `span` between its wings, and what that costs.
- */
+/* Sizes of both rings, u's with `span` between its wings; what that costs. */
 static inline void make_span(const cutter *s, bool ghost, uint32_t span,
                              common *o)
 {
@@ -319,9 +313,7 @@ static inline void make_span(const cutter *s, bool ghost, uint32_t span,
 /* Of options, up to their third axis: squares of v's way off the centre of its
  * ring, where u is at the mean of its own, and of u's way off its newborn
  * neighbours' displacement. */
-typedef struct squares {
-    lanes off, stray;
-} squares;
+typedef struct squares { lanes off, stray; } squares;
 
 /* One axis: u gets `part`, v keeps what is left of all, and the wings. */
 static inline void add_axis(const common *o, int k, lanes part, lanes wings,
@@ -466,8 +458,7 @@ static uint32_t count_options(const cutter *s)
     return s->open ? n * (n - 1) / 2 + 2 * n : n * (n - 1);
 }
 
-/* ---- coding ---------------------------------------------------------------
- */
+/* ---- coding -------------------------------------------------------------- */
 
 static int16_t least_cost(const options *list)
 {
@@ -551,8 +542,7 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
     return best;
 }
 
-/* ---- learning -------------------------------------------------------------
- */
+/* ---- learning ------------------------------------------------------------ */
 
 /* Modulo 2^32: only a stream made for it goes that far. */
 static void adjust(int32_t *weight, int32_t change)
@@ -661,8 +651,7 @@ static void learn(cutter *s, uint32_t truth)
     learn_wings(s);
 }
 
-/* ---- between cuts and options ---------------------------------------------
- */
+/* ---- between cuts and options -------------------------------------------- */
 
 static uint32_t find(const cutter *s, const pmesh_cut *cut)
 {
