@@ -46,6 +46,14 @@ class Svg:
         self.out.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" '
                         f'fill="{fill}"/>')
 
+    def legend(self, entries):
+        """Lines of these (label, color) and what they mean, below the title."""
+        x = 24
+        for label, color in entries:
+            self.line([(x, 82), (x + 24, 82)], color, 2.4)
+            self.text(x + 31, 86, label)
+            x += 60 + 6.3 * len(label)
+
     def save(self, path):
         w, h = self.size
         with open(path, "w", encoding="utf-8") as file:
@@ -237,11 +245,7 @@ def draw_rate(rows, path):
               "What a prefix of the file shows",
               "bytes received against RMS distance to the original, % of the "
               "bounding box's diagonal")
-    x = 24
-    for color, label in SERIES.values():
-        svg.line([(x, 82), (x + 24, 82)], color, 2.4)
-        svg.text(x + 31, 86, label)
-        x += 60 + 6.2 * len(label)
+    svg.legend((label, color) for color, label in SERIES.values())
     for i, model in enumerate(models):
         box = (74 + i % columns * wide, 112 + i // columns * tall, wide - 84,
                tall - 50)
@@ -343,11 +347,7 @@ def draw_scale(rows, path):
     svg = Svg(1120, 460, "Growth with the size of the mesh",
               "generated meshes, one core; memory is what the allocator hooks "
               "gave out at most, the input not counted")
-    x = 24
-    for what, color in SCALED.items():
-        svg.line([(x, 82), (x + 24, 82)], color, 2.4)
-        svg.text(x + 31, 86, what)
-        x += 60 + 6.4 * len(what)
+    svg.legend(SCALED.items())
     scale_panel(svg, rows, "us_per_face", "CPU microseconds per face",
                 (70, 130, 380, 270))
     scale_panel(svg, rows, "bytes_per_face", "peak memory, bytes per face",
