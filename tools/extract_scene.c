@@ -11,6 +11,7 @@
 #include "tools/extract_library.h"
 #include "tools/load.h"
 #include "tools/report.h"
+#include "tools/scene_budget.h"
 #include "tools/scene_file.h"
 #include "tools/scene_write.h"
 
@@ -20,7 +21,9 @@ typedef struct job {
     const extract_request *request;
     const file_data *data;
     scene_file file;
-    uint64_t all_faces;
+    scene_budget budget; /* unless one mesh is asked for */
+    uint64_t all_faces; /* as drawn */
+    uint64_t stored_faces;
     pmesh_scene_shown shown;
     asset notes; /* its warnings */
     extract_library library; /* of an OBJ in a file */
@@ -53,13 +56,18 @@ static int choose(job *j)
 {
     const extract_request *r = j->request;
     const char *name = file_input_name(r->input);
-    const pmesh_scene_header *h = &j->file.header;
+    asset_error error;
     /* Levels store floats: what info prints must be met when it is given. */
     const double bound = (double)(float)r->error * (1 + 1e-6);
 
-    j->all_faces = h->levels[h->level_count - 1].faces;
+    if (!scene_budget_open(j->file.scene, &j->budget, &error))
+        return input_failed(
+            j, j->file.progress.complete ? CMD_IO : CMD_STREAM, &error);
+    j->all_faces = j->budget.all;
+    j->stored_faces = j->budget.stored;
     const pmesh_scene_target target = {
-        .faces = extract_face_bound(r->faces, r->ratio, j->all_faces),
+        .faces = scene_budget_stored(
+            &j->budget, extract_face_bound(r->faces, r->ratio, j->all_faces)),
         .error = r->error > 0 ? bound : 0
     };
     if (pmesh_scene_refine(j->file.scene, &target, &j->shown) != PMESH_OK) {
@@ -71,6 +79,7 @@ static int choose(job *j)
                      "what is there reaches %g", r->error, j->shown.error);
         return CMD_BOUND;
     }
+    j->shown.faces = scene_budget_drawn(&j->budget, &target);
     return CMD_DONE;
 }
 
@@ -102,7 +111,7 @@ static int choose_mesh(job *j, pmesh_decoder **out)
     };
     pmesh_decoder_refine(dec, &target, NULL);
     pmesh_decoder_mesh(dec, &view);
-    j->all_faces = h.faces;
+    j->all_faces = j->stored_faces = h.faces;
     j->shown = (pmesh_scene_shown){ view.face_count, 1, (double)view.error };
     if (r->error >= 0 && (double)view.error > bound) {
         report_error(name, NULL, "cannot come within %g of the full mesh: what "
@@ -173,8 +182,8 @@ static bool read_lods(job *j, asset_error *error)
             return asset_fail(error, "", "--lods are up to %d falling shares "
                               "of the faces: 100%%,25%%,5%%", MAX_LODS);
         last = share;
-        j->lod_faces[j->lod_count++] =
-            extract_face_bound(0, share, j->all_faces);
+        j->lod_faces[j->lod_count++] = scene_budget_stored(
+            &j->budget, extract_face_bound(0, share, j->all_faces));
     }
     return true;
 }
@@ -269,11 +278,11 @@ static void warn(const job *j, const asset_error *damage)
     if (damage)
         report_note(&notes, "%s%s%s; salvaged %" PRIu64 " of %" PRIu64
                     " faces", damage->where, *damage->where ? ": " : "",
-                    damage->what, j->file.progress.faces, j->all_faces);
+                    damage->what, j->file.progress.faces, j->stored_faces);
     else if (!j->file.progress.complete && !j->data->more)
         report_note(&notes, "cut off after %zu bytes: %" PRIu64 " of %" PRIu64
                     " faces", j->data->size, j->file.progress.faces,
-                    j->all_faces);
+                    j->stored_faces);
     report_notes_print(&notes, name);
 }
 
@@ -309,6 +318,7 @@ int extract_scene(const extract_request *request, const file_data *data)
     job j = { .request = request, .data = data };
     const int code = run(&j);
     extract_library_close(&j.library);
+    scene_budget_close(&j.budget);
     scene_file_close(&j.file);
     return code;
 }

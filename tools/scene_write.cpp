@@ -51,7 +51,7 @@ std::vector<size_t> scene_writer::free_list(const char *name)
 }
 
 /* As text, at most as long as a document may be. */
-void scene_writer::read_document(asset_bytes *plain)
+void scene_read_document(const pmesh_scene *scene, asset_bytes *plain)
 {
     const pmesh_scene_bytes text = pmesh_scene_document(scene);
     const auto size = static_cast<size_t>(text.size);
@@ -75,7 +75,7 @@ void scene_writer::open()
     asset unused = {};
     asset_error error;
 
-    read_document(&plain);
+    scene_read_document(scene, &plain);
     if (!gltf_open(plain.data, plain.size, &source, &unused, &error))
         throw std::runtime_error(std::string("the document is no glTF: ") +
                                  error.what);

@@ -13,6 +13,10 @@
 #include "tools/scene_geometry.h"
 #include "tools/scene_write.h"
 
+/* The document as text, at most as long as one may be. Throws
+ * std::runtime_error while it has not arrived. */
+void scene_read_document(const pmesh_scene *scene, asset_bytes *plain);
+
 #define GLTF_DRACO "KHR_draco_mesh_compression"
 
 class scene_writer {
@@ -39,7 +43,6 @@ private:
     std::vector<bool> in_stream;        /* by resource */
     std::vector<size_t> image_views;    /* that show one of these */
 
-    void read_document(asset_bytes *plain);
     void open();
     std::vector<size_t> free_list(const char *name);
     size_t place(const char *list, std::vector<size_t> &free,

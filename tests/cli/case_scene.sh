@@ -51,6 +51,51 @@ check 'materials of one name' 0 extract names.pmesh -q -o names.obj
 ok 'get several' test "$(grep newmtl names.mtl | sort -u | wc -l)" = 3
 check 'one mesh' 0 extract two.pmesh -q --mesh 1 -o back.obj
 ok 'one mesh is one' test "$(faces back.obj)" = 1
+# Of ten nodes the first nine show a torus, the tenth shows another one.
+cat >many.py <<'END'
+import json, math, struct, base64
+n = 24
+turn = [2 * math.pi * i / n for i in range(n)]
+at = [((2 + math.cos(u)) * math.cos(v), (2 + math.cos(u)) * math.sin(v),
+       math.sin(u)) for u in turn for v in turn]
+face = [f for i in range(n) for k in range(n)
+        for a, b, c, d in [[(i + y) % n * n + (k + x) % n
+                            for y in (0, 1) for x in (0, 1)]]
+        for f in [(a, c, b), (b, c, d)]]
+data = b"".join(struct.pack("<3f", *p) for p in at)
+split = len(data)
+data += b"".join(struct.pack("<3I", *f) for f in face)
+mesh = {"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}
+json.dump({"asset": {"version": "2.0"}, "scene": 0,
+    "scenes": [{"nodes": list(range(10))}],
+    "nodes": [{"mesh": i // 9, "translation": [7 * i, 0, 0]}
+              for i in range(10)],
+    "meshes": [mesh, mesh],
+    "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": len(at),
+         "type": "VEC3", "min": [-3, -3, -1], "max": [3, 3, 1]},
+        {"bufferView": 1, "componentType": 5125, "count": 3 * len(face),
+         "type": "SCALAR"}],
+    "bufferViews": [
+        {"buffer": 0, "byteLength": split},
+        {"buffer": 0, "byteOffset": split, "byteLength": len(data) - split}],
+    "buffers": [{"byteLength": len(data), "uri":
+        "data:application/octet-stream;base64," +
+        base64.b64encode(data).decode()}]}, open("many.gltf", "w"))
+END
+python3 many.py
+check 'a scene of instances' 0 bake many.gltf -q -o many.pmesh
+check 'all of it' 0 extract many.pmesh -q -o many.obj
+all=$(faces many.obj)
+for bound in 2000 4000 9000; do
+    check "at most $bound faces" 0 extract many.pmesh --faces $bound -o many.obj
+    got=$(faces many.obj)
+    ok 'count as they are drawn' test "$got" -le $bound
+    ok 'and come near' test "$got" -gt $((bound * 9 / 10))
+    ok 'and are told so' out "many.obj: $got of $all faces"
+done
+check 'a share of them' 0 extract many.pmesh -q --ratio 50% -o many.obj
+ok 'is one of what is drawn' test "$(faces many.obj)" -le $((all / 2))
 check 'levels' 0 extract two.pmesh -q --lods 100%,50% -o x.glb
 for lods in '' 50%,100% 0% 120% 1,x 1,; do
     check "levels \"$lods\"" 1 extract two.pmesh --lods "$lods" -o x.glb
