@@ -283,6 +283,7 @@ $(bench_programs): $(B)/bench_%: $(B)/tests/bench/bench_%.o
 	$(quiet)$(CXX) $(inputs) $(link_flags) $(bench_libs) -o $@
 $(B)/bench_attributes: $(B)/tests/bench/attribute_measure.o
 $(B)/bench_simplify $(B)/bench_speed: $(B)/tests/bench/peers.o
+$(B)/bench_speed: $(B)/tests/bench/parsers.o
 $(B)/bench_attributes $(B)/bench_speed: $(shared_obj) $(B)/libpmesh.a
 $(B)/bench_decode $(B)/bench_refine: $(B)/libpmesh-dec.a
 openmesh := -lOpenMeshTools -lOpenMeshCore

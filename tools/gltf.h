@@ -11,7 +11,7 @@
  *   gltf_scene.c      node tree -> instances with world matrices
  *   gltf_survey.c     instances -> counts, channels, materials
  *   gltf_merge.c      instances -> one mesh
- *   gltf_faces.c      triangles of a primitive
+ *   gltf_faces.c      triangles of a primitive, and the vertices they name
  *
  * or, for scenes, with everything that a primitive has:
  *
@@ -176,8 +176,14 @@ bool gltf_accessor_prepare(gltf_accessor *accessor, gltf_budget *budget,
 /* Element `i` as real numbers, `components` of them. */
 void gltf_get(const gltf_accessor *accessor, uint64_t i, double out[4]);
 
-/* Element `i` of a prepared scalar accessor of unsigned integers. */
-uint32_t gltf_index(const gltf_accessor *accessor, uint64_t i);
+/* Elements which[0], ... which[n - 1], one behind the other. */
+void gltf_gather(const gltf_accessor *accessor, const uint32_t *which, size_t n,
+                 double *out);
+
+/* Elements first, ... first + n - 1 of a prepared scalar accessor of unsigned
+ * integers; the return value is the largest, 0 if there is none. */
+uint32_t gltf_indices(const gltf_accessor *accessor, uint64_t first, size_t n,
+                      uint32_t *out);
 
 /* A mesh in the world: x' = m[0] x + m[1] y + m[2] z + m[3], and so on. */
 typedef struct gltf_instance {
@@ -193,9 +199,35 @@ bool gltf_scene_walk(const gltf_model *model, gltf_instance **out,
 bool gltf_face_count(const gltf_model *model, const gltf_primitive *p,
                      const char *where, uint64_t *faces, asset_error *error);
 
-/* The vertices of face `i`, below the count of its positions. */
-bool gltf_face(const gltf_model *model, const gltf_primitive *p, uint64_t i,
-               const char *where, uint32_t v[3], asset_error *error);
+/* The vertices of each face, below the count of its positions. Triangles that
+ * only join the parts of a strip are left out: *faces may be less than the room,
+ * which is for all that gltf_face_count() counts. */
+bool gltf_faces(const gltf_model *model, const gltf_primitive *p,
+                const char *where, uint32_t *out, size_t *faces,
+                asset_error *error);
+
+/* Numbers vertices in the order in which faces name them. */
+typedef struct gltf_order {
+    uint32_t *numbers;  /* by a primitive's vertex: 1 + its number, or 0 */
+    uint32_t *vertices; /* the primitive's, by number - first */
+} gltf_order;
+
+/* For primitives of so many vertices at most. False if memory is short: what
+ * there is is to be freed then, too. */
+bool gltf_order_make(gltf_order *order, uint64_t largest);
+void gltf_order_free(gltf_order *order);
+
+/* Replaces a primitive's vertices in `corners` by numbers from `first` up and
+ * returns how many vertices there are. What primitives before it have left in
+ * `numbers` is not above `first`. */
+size_t gltf_renumber(gltf_order *order, uint32_t first, uint32_t *corners,
+                     size_t n);
+
+/* Takes the positions of vertices[0 .. n); *where names the primitive. */
+bool gltf_positions(const gltf_accessor *position, const uint32_t *vertices,
+                    size_t n, const char *where, double *out,
+                    asset_error *error);
+bool gltf_fail_position(const char *where, uint32_t vertex, asset_error *error);
 
 /* What the scene comes to. */
 typedef struct gltf_plan {

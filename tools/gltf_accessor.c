@@ -160,9 +160,59 @@ void gltf_get(const gltf_accessor *a, uint64_t i, double out[4])
                      : 0.0;
 }
 
-uint32_t gltf_index(const gltf_accessor *a, uint64_t i)
+/* `components` is a constant where this is called. */
+static inline void gather_floats(const gltf_accessor *a, size_t components,
+                                 const uint32_t *which, size_t n, double *out)
 {
-    if (!a->view.data)
+    for (size_t i = 0; i < n; i++) {
+        const uint8_t *p = a->view.data + (size_t)which[i] * a->stride;
+        for (size_t k = 0; k < components; k++)
+            *out++ = get_component(p + 4 * k, GLTF_F32, false);
+    }
+}
+
+void gltf_gather(const gltf_accessor *a, const uint32_t *which, size_t n,
+                 double *out)
+{
+    const bool floats = a->view.data && a->type == GLTF_F32;
+    double element[4];
+
+    if (floats && a->components == 3) {
+        gather_floats(a, 3, which, n, out);
+    } else if (floats && a->components == 2) {
+        gather_floats(a, 2, which, n, out);
+    } else {
+        for (size_t i = 0; i < n; i++) {
+            gltf_get(a, which[i], element);
+            for (size_t k = 0; k < a->components; k++)
+                *out++ = element[k];
+        }
+    }
+}
+
+/* `size` is a constant where this is called. */
+static inline uint32_t get_indices(const uint8_t *p, size_t stride,
+                                   uint32_t size, size_t n, uint32_t *out)
+{
+    uint32_t largest = 0;
+    for (size_t i = 0; i < n; i++) {
+        out[i] = get_unsigned(p + i * stride, size);
+        largest = out[i] > largest ? out[i] : largest;
+    }
+    return largest;
+}
+
+uint32_t gltf_indices(const gltf_accessor *a, uint64_t first, size_t n,
+                      uint32_t *out)
+{
+    if (!a->view.data) {
+        memset(out, 0, n * sizeof *out);
         return 0;
-    return get_unsigned(a->view.data + i * a->stride, type_size(a->type));
+    }
+    const uint8_t *p = a->view.data + first * a->stride;
+    if (a->type == GLTF_U32 && a->stride == 4)
+        return get_indices(p, 4, 4, n, out);
+    if (a->type == GLTF_U16 && a->stride == 2)
+        return get_indices(p, 2, 2, n, out);
+    return get_indices(p, a->stride, type_size(a->type), n, out);
 }

@@ -45,12 +45,12 @@ private:
     gltf_parts parts;
     std::vector<use> accessor_use, view_use;
     std::vector<bool> image_view, image_taken;
-    std::vector<gltf_bytes> buffers; /* loaded when needed */
+    std::vector<gltf_blob> buffers; /* loaded when needed */
     bool keeps_primitives = false, keeps_draco = false;
 
     size_t count(const char *list) const;
     gltf_item item(const char *list, size_t number) const;
-    const gltf_bytes &buffer(uint32_t number);
+    const gltf_blob &buffer(uint32_t number);
     gltf_bytes view_bytes(size_t number);
 
     void mark_view(const gltf_item &from, use by);
@@ -91,7 +91,7 @@ gltf_item taker::item(const char *name, size_t number) const
 
 /* ---- bytes -------------------------------------------------------------- */
 
-const gltf_bytes &taker::buffer(uint32_t number)
+const gltf_blob &taker::buffer(uint32_t number)
 {
     if (buffers[number].empty())
         buffers[number] = gltf_load_buffer(source, item("buffers", number));
@@ -108,13 +108,12 @@ gltf_bytes taker::view_bytes(size_t number)
     const uint64_t size = from.whole("byteLength");
     if (id == GLTF_NONE || size == 0)
         from.fail("no buffer, or no bytes");
-    const gltf_bytes &bytes = buffer(id);
+    const gltf_blob &bytes = buffer(id);
     if (offset > bytes.size() || size > bytes.size() - offset)
         from.fail("runs past its buffer");
     if (packed)
         return gltf_inflate(from, bytes.data() + offset, size, budget);
-    const auto start = bytes.begin() + static_cast<std::ptrdiff_t>(offset);
-    return gltf_bytes(start, start + static_cast<std::ptrdiff_t>(size));
+    return gltf_bytes(bytes.data() + offset, bytes.data() + offset + size);
 }
 
 /* ---- what is still needed ----------------------------------------------- */

@@ -2,17 +2,17 @@
 /*
  * gltf_merge.c - placed meshes into one asset.
  *
- * Only vertices that faces name are copied, each once per primitive, so that
- * primitives sharing one large buffer do not multiply it. Attribute values that
- * make no sense pass through: asset_check() repairs them for all formats.
+ * Attribute values that make no sense pass through: asset_check() repairs them
+ * for all formats.
  */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "tools/gltf.h"
+
+#define BLOCK 256 /* elements at a time */
 
 typedef struct merge {
     const gltf_model *model;
@@ -21,7 +21,7 @@ typedef struct merge {
     asset *out;
     asset_error *error;
     gltf_plan plan;
-    uint32_t *map, *stamp, serial; /* map[v] is valid if stamp[v] == serial */
+    gltf_order order;
 } merge;
 
 /* One primitive in its place. */
@@ -46,10 +46,8 @@ static bool reserve(merge *g)
     out->indices = malloc(faces * 3 * sizeof *out->indices);
     if (out->material_count > 1)
         out->materials = malloc(faces * sizeof *out->materials);
-    g->map = malloc((size_t)g->plan.largest * sizeof *g->map);
-    g->stamp = calloc((size_t)g->plan.largest, sizeof *g->stamp);
-    bool ok = out->positions && out->indices && g->map && g->stamp &&
-              (out->materials || out->material_count <= 1);
+    bool ok = gltf_order_make(&g->order, g->plan.largest) && out->positions &&
+              out->indices && (out->materials || out->material_count <= 1);
     for (size_t i = 0; i < out->attribute_count; i++) {
         asset_attribute *a = &out->attributes[i];
         a->values = malloc(vertices * a->components * sizeof *a->values);
@@ -114,93 +112,118 @@ static void put_normal(const placed *p, const double in[4], float *out)
 
 /* Without an accessor: no direction (asset_check() takes the faces'), the UV
  * origin, white. */
-static void put_channel(const merge *g, const placed *p, size_t i, uint32_t v,
-                        size_t id)
+static void put_channel(const placed *p, const asset_attribute *a,
+                        const gltf_accessor *from, const double *in, float *out)
 {
-    const asset_attribute *a = &g->out->attributes[i];
     const float neutral = a->kind == PMESH_COLOR ? 1.0f : 0.0f;
-    float *out = a->values + id * a->components;
-    double in[4];
 
-    for (unsigned k = 0; k < a->components; k++)
-        out[k] = neutral;
-    if (!p->channels[i])
-        return;
-    gltf_get(p->channels[i], v, in);
-    if (a->kind == PMESH_NORMAL) {
+    if (a->kind == PMESH_NORMAL && from) {
         put_normal(p, in, out);
         return;
     }
-    for (unsigned k = 0; k < p->channels[i]->components; k++)
+    for (unsigned k = 0; k < a->components; k++)
+        out[k] = neutral;
+    for (unsigned k = 0; from && k < from->components; k++)
         out[k] = fabs(in[k]) <= FLT_MAX ? (float)in[k] : NAN;
 }
 
-/* Where a row moves nothing, the same bits: a sum would lose the sign of -0. */
-static double placed_at(const double *m, int i, const double in[4])
+static void take_channels(merge *g, const placed *p, size_t first, size_t n)
 {
-    const double *row = m + 4 * i;
+    double in[4 * BLOCK];
+
+    for (size_t i = 0; i < g->out->attribute_count; i++) {
+        const asset_attribute *a = &g->out->attributes[i];
+        const gltf_accessor *from = p->channels[i];
+        const size_t width = from ? from->components : 0;
+        for (size_t at = 0; at < n; at += BLOCK) {
+            const size_t size = n - at < BLOCK ? n - at : BLOCK;
+            float *out = a->values + (first + at) * a->components;
+            if (from)
+                gltf_gather(from, g->order.vertices + at, size, in);
+            for (size_t k = 0; k < size; k++)
+                put_channel(p, a, from, in + k * width,
+                            out + k * a->components);
+        }
+    }
+}
+
+/* Where a row moves nothing, the same bits: a sum would lose the sign of -0. */
+static bool is_still(const double *row, int i)
+{
     bool still = row[3] == 0.0;
     for (int k = 0; k < 3; k++)
         still = still && row[k] == (k == i ? 1.0 : 0.0);
-    return still ? in[i]
-                 : row[0] * in[0] + row[1] * in[1] + row[2] * in[2] + row[3];
+    return still;
 }
 
-/* The asset's vertex for vertex `v` of the primitive. */
-static bool take_vertex(merge *g, const placed *p, uint32_t v, uint32_t *id)
+static bool move(const placed *p, const uint32_t *vertices, size_t n,
+                 double *xyz, asset_error *error)
 {
-    if (g->stamp[v] == g->serial) {
-        *id = g->map[v];
-        return true;
-    }
-    const size_t n = g->out->vertex_count++;
-    double in[4], *out = g->out->positions + 3 * n;
+    const double *m = p->m;
+    const bool still[3] = { is_still(m, 0), is_still(m + 4, 1),
+                            is_still(m + 8, 2) };
 
-    gltf_get(p->position, v, in);
-    for (int i = 0; i < 3; i++) {
-        out[i] = placed_at(p->m, i, in);
-        if (!isfinite(out[i]))
-            return asset_fail(g->error, p->where,
-                              "vertex %u has a position that is not finite",
-                              (unsigned)v);
+    if (still[0] && still[1] && still[2])
+        return true;
+    for (size_t v = 0; v < n; v++) {
+        double *at = xyz + 3 * v;
+        const double in[3] = { at[0], at[1], at[2] };
+        for (int i = 0; i < 3; i++) {
+            const double *row = m + 4 * i;
+            if (!still[i])
+                at[i] = row[0] * in[0] + row[1] * in[1] + row[2] * in[2] +
+                        row[3];
+            if (!isfinite(at[i]))
+                return gltf_fail_position(p->where, vertices[v], error);
+        }
     }
-    for (size_t i = 0; i < g->out->attribute_count; i++)
-        put_channel(g, p, i, v, n);
-    g->stamp[v] = g->serial;
-    g->map[v] = (uint32_t)n;
-    *id = (uint32_t)n;
     return true;
 }
 
-static bool take_faces(merge *g, const placed *p)
+static bool take_vertices(merge *g, const placed *p, size_t n)
 {
-    const uint32_t mode = p->primitive->mode;
-    uint64_t faces;
+    const size_t first = g->out->vertex_count;
+    double *xyz = g->out->positions + 3 * first;
+    const uint32_t *vertices = g->order.vertices;
+
+    if (!gltf_positions(p->position, vertices, n, p->where, xyz, g->error) ||
+        !move(p, vertices, n, xyz, g->error))
+        return false;
+    take_channels(g, p, first, n);
+    g->out->vertex_count += n;
+    return true;
+}
+
+/* The other side of a face is its front. */
+static void turn(uint32_t *corners, size_t faces)
+{
+    for (size_t i = 0; i < faces; i++) {
+        uint32_t *v = corners + 3 * i, second = v[1];
+        v[1] = v[2];
+        v[2] = second;
+    }
+}
+
+static bool take_primitive(merge *g, const placed *p)
+{
     const size_t material = p->primitive->material == GLTF_NONE
                                 ? g->model->material_count
                                 : p->primitive->material;
     asset *out = g->out;
+    uint32_t *corners = out->indices + 3 * out->face_count;
+    size_t faces;
 
-    if (!gltf_face_count(g->model, p->primitive, p->where, &faces, g->error))
+    if (!gltf_faces(g->model, p->primitive, p->where, corners, &faces,
+                    g->error) ||
+        !take_vertices(g, p,
+                       gltf_renumber(&g->order, (uint32_t)out->vertex_count,
+                                     corners, 3 * faces)))
         return false;
-    g->serial++;
-    for (uint64_t i = 0; i < faces; i++) {
-        uint32_t v[3];
-        if (!gltf_face(g->model, p->primitive, i, p->where, v, g->error))
-            return false;
-        /* Strips are joined by triangles without area: no faces of anyone. */
-        if (mode != 4 && (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]))
-            continue;
-        uint32_t *face = out->indices + 3 * out->face_count;
-        for (int k = 0; k < 3; k++) {
-            const int at = p->mirrored && k > 0 ? 3 - k : k;
-            if (!take_vertex(g, p, v[k], &face[at]))
-                return false;
-        }
-        if (out->materials)
-            out->materials[out->face_count] = g->plan.materials[material];
-        out->face_count++;
-    }
+    if (p->mirrored)
+        turn(corners, faces);
+    for (size_t i = 0; out->materials && i < faces; i++)
+        out->materials[out->face_count + i] = g->plan.materials[material];
+    out->face_count += faces;
     return true;
 }
 
@@ -213,7 +236,7 @@ static bool copy_all(merge *g)
             if (g->model->primitives[mesh->first + k].position == GLTF_NONE)
                 continue;
             place(g, &g->instances[i], k, &p);
-            if (!take_faces(g, &p))
+            if (!take_primitive(g, &p))
                 return false;
         }
     }
@@ -237,7 +260,6 @@ bool gltf_merge(const gltf_model *model, const gltf_instance *instances,
         ok = asset_fail(error, "", "out of memory");
     ok = ok && copy_all(&g);
     free(g.plan.materials);
-    free(g.map);
-    free(g.stamp);
+    gltf_order_free(&g.order);
     return ok;
 }

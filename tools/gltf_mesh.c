@@ -10,13 +10,15 @@
 
 #include "tools/gltf.h"
 
+#define BLOCK 256 /* elements at a time */
+
 typedef struct maker {
     const gltf_model *model;
     const gltf_channels *channels;
     asset *out;
     asset_error *error;
     bool empty;
-    uint32_t *map, *stamp, serial; /* map[v] is valid if stamp[v] == serial */
+    gltf_order order;
 } maker;
 
 /* One primitive at work. */
@@ -35,7 +37,7 @@ static bool reserve(maker *m, uint64_t faces, uint64_t vertices,
                     uint64_t largest)
 {
     asset *out = m->out;
-    bool ok = true;
+    bool ok;
 
     if (faces > GLTF_MAX_FACES)
         return asset_fail(m->error, "", "more than %llu triangles",
@@ -43,8 +45,7 @@ static bool reserve(maker *m, uint64_t faces, uint64_t vertices,
     out->positions = malloc((size_t)vertices * 3 * sizeof *out->positions);
     out->indices = malloc((size_t)faces * 3 * sizeof *out->indices);
     out->materials = malloc((size_t)faces * sizeof *out->materials);
-    m->map = malloc((size_t)largest * sizeof *m->map);
-    m->stamp = calloc((size_t)largest, sizeof *m->stamp);
+    ok = gltf_order_make(&m->order, largest);
     for (size_t i = 0; i < m->channels->count; i++) {
         const gltf_channel *c = &m->channels->item[i];
         float *values =
@@ -59,68 +60,59 @@ static bool reserve(maker *m, uint64_t faces, uint64_t vertices,
     }
     out->attribute_count = m->channels->count;
     out->texcoords_down = true;
-    ok = ok && out->positions && out->indices && out->materials && m->map &&
-         m->stamp;
+    ok = ok && out->positions && out->indices && out->materials;
     return ok || asset_fail(m->error, "", "out of memory");
 }
 
-static void put_channel(const maker *m, const part *p, size_t i, uint32_t v,
-                        size_t id)
+static void put_channel(const gltf_channel *c, const gltf_accessor *from,
+                        const double *in, float *out)
 {
-    const gltf_channel *c = &m->channels->item[i];
-    float *out = m->out->attributes[i].values + id * c->components;
-    double in[4] = { 0 };
-
     for (unsigned k = 0; k < c->components; k++)
         out[k] = c->kind == PMESH_COLOR ? 1.0f : 0.0f;
     if (c->kind == PMESH_NORMAL)
         out[2] = 1.0f;
-    if (!p->channel[i])
-        return;
-    gltf_get(p->channel[i], v, in);
-    for (unsigned k = 0; k < p->channel[i]->components; k++)
+    for (unsigned k = 0; from && k < from->components; k++)
         out[k] = fabs(in[k]) <= (double)FLT_MAX ? (float)in[k] : NAN;
 }
 
-static bool take_vertex(maker *m, const part *p, uint32_t v, uint32_t *id)
+static void take_channels(const maker *m, const part *p, size_t n)
 {
-    if (m->stamp[v] != m->serial) {
-        const size_t n = m->out->vertex_count++;
-        double xyz[4];
-        gltf_get(p->position, v, xyz);
-        for (int i = 0; i < 3; i++) {
-            m->out->positions[3 * n + (size_t)i] = xyz[i];
-            if (!isfinite(xyz[i]))
-                return asset_fail(m->error, p->where, "vertex %u has a position "
-                                  "that is not finite", (unsigned)v);
+    double in[4 * BLOCK];
+
+    for (size_t i = 0; i < m->channels->count; i++) {
+        const gltf_channel *c = &m->channels->item[i];
+        const gltf_accessor *from = p->channel[i];
+        const size_t width = from ? from->components : 0;
+        for (size_t at = 0; at < n; at += BLOCK) {
+            const size_t size = n - at < BLOCK ? n - at : BLOCK;
+            float *out = m->out->attributes[i].values +
+                         (m->out->vertex_count + at) * c->components;
+            if (from)
+                gltf_gather(from, m->order.vertices + at, size, in);
+            for (size_t k = 0; k < size; k++)
+                put_channel(c, from, in + k * width, out + k * c->components);
         }
-        for (size_t i = 0; i < m->channels->count; i++)
-            put_channel(m, p, i, v, n);
-        m->stamp[v] = m->serial;
-        m->map[v] = (uint32_t)n;
     }
-    *id = m->map[v];
-    return true;
 }
 
-static bool take_faces(maker *m, const part *p)
+static bool take_part(maker *m, const part *p)
 {
     asset *out = m->out;
+    uint32_t *corners = out->indices + 3 * out->face_count;
+    size_t faces;
 
-    m->serial++;
-    for (uint64_t i = 0; i < p->faces; i++) {
-        uint32_t v[3];
-        if (!gltf_face(m->model, p->primitive, i, p->where, v, m->error))
-            return false;
-        /* Strips are joined by triangles without area: no faces of anyone. */
-        if (p->primitive->mode != 4 &&
-            (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]))
-            continue;
-        for (size_t k = 0; k < 3; k++)
-            if (!take_vertex(m, p, v[k], &out->indices[3 * out->face_count + k]))
-                return false;
+    if (!gltf_faces(m->model, p->primitive, p->where, corners, &faces,
+                    m->error))
+        return false;
+    const size_t n = gltf_renumber(&m->order, (uint32_t)out->vertex_count,
+                                   corners, 3 * faces);
+    if (!gltf_positions(p->position, m->order.vertices, n, p->where,
+                        out->positions + 3 * out->vertex_count, m->error))
+        return false;
+    take_channels(m, p, n);
+    out->vertex_count += n;
+    for (size_t i = 0; i < faces; i++)
         out->materials[out->face_count++] = p->material;
-    }
     return true;
 }
 
@@ -187,7 +179,7 @@ static bool make(maker *m, const gltf_mesh *mesh, part *parts)
     if (!reserve(m, faces, vertices, largest))
         return false;
     for (size_t k = 0; k < count; k++)
-        if (!take_faces(m, &parts[k]))
+        if (!take_part(m, &parts[k]))
             return false;
     for (size_t i = 0; i < m->out->attribute_count; i++)
         m->out->attributes[i].count = m->out->vertex_count;
@@ -207,8 +199,7 @@ bool gltf_mesh_asset(const gltf_model *model, const gltf_mesh *mesh,
                           : asset_fail(error, "", "out of memory");
     *empty = m.empty;
     free(parts);
-    free(m.map);
-    free(m.stamp);
+    gltf_order_free(&m.order);
     if (!ok) {
         asset_free(out);
         *out = (asset){ 0 };

@@ -46,8 +46,8 @@ private:
 
     void check_version() const;
     void check_extensions();
-    gltf_bytes load(const gltf_item &buffer);
-    uint32_t add_blob(gltf_bytes bytes);
+    gltf_blob load(const gltf_item &buffer);
+    uint32_t add_blob(gltf_blob blob);
     uint32_t buffer(uint32_t number);
     uint32_t view(uint32_t number);
     uint32_t inflated_view(const gltf_item &view, const gltf_json &extension);
@@ -141,9 +141,9 @@ void builder::check_extensions()
     }
 }
 
-gltf_bytes builder::load(const gltf_item &from)
+gltf_blob builder::load(const gltf_item &from)
 {
-    gltf_bytes bytes = gltf_load_buffer(source, from);
+    gltf_blob bytes = gltf_load_buffer(source, from);
     const auto uri = from.value.find("uri");
     if (uri != from.value.end() &&
         uri->get_ref<const std::string &>().compare(0, 5, "data:") != 0) {
@@ -154,12 +154,10 @@ gltf_bytes builder::load(const gltf_item &from)
     return bytes;
 }
 
-uint32_t builder::add_blob(gltf_bytes bytes)
+uint32_t builder::add_blob(gltf_blob blob)
 {
-    const size_t number = plain.blobs.size();
-    plain.blobs.push_back(std::move(bytes));
-    return add("buffers", { { "byteLength", plain.blobs.back().size() },
-                            { "uri", std::to_string(number) } });
+    plain.blobs.push_back(std::move(blob));
+    return static_cast<uint32_t>(plain.blobs.size() - 1);
 }
 
 uint32_t builder::buffer(uint32_t number)
@@ -192,7 +190,7 @@ uint32_t builder::blob_view(gltf_bytes bytes)
 {
     const size_t size = bytes.size();
     return add("bufferViews",
-               { { "buffer", add_blob(std::move(bytes)) },
+               { { "buffer", add_blob(gltf_blob(std::move(bytes))) },
                  { "byteOffset", 0u }, { "byteLength", size } });
 }
 
@@ -543,7 +541,7 @@ gltf_plain builder::build()
 
 } // namespace
 
-gltf_bytes gltf_load_buffer(const gltf_source &source, const gltf_item &from)
+gltf_blob gltf_load_buffer(const gltf_source &source, const gltf_item &from)
 {
     const uint64_t size = from.whole("byteLength");
     const auto uri = from.value.find("uri");
@@ -555,7 +553,7 @@ gltf_bytes gltf_load_buffer(const gltf_source &source, const gltf_item &from)
             from.fail("there are no data for it");
         if (size > source.bin_size)
             from.fail("longer than the file's BIN chunk");
-        return gltf_bytes(source.bin, source.bin + size);
+        return gltf_blob(source.bin, size);
     }
     if (!uri->is_string())
         from.fail("uri is not a string");
@@ -571,7 +569,7 @@ gltf_bytes gltf_load_buffer(const gltf_source &source, const gltf_item &from)
     if (!gltf_uri_read(&source, name.c_str(), name.size(), bytes.data(), size,
                        &error))
         from.fail(error.what);
-    return bytes;
+    return gltf_blob(std::move(bytes));
 }
 
 bool gltf_is_harmless(const std::string &name)

@@ -41,10 +41,32 @@ json &gltf_list(json &of, const char *name)
 }
 using gltf_bytes = std::vector<uint8_t>;
 
+/* What a buffer holds: bytes of its own, or the source's. */
+class gltf_blob {
+public:
+    gltf_blob() = default;
+    gltf_blob(const uint8_t *data, size_t size) : first(data), count(size) {}
+    explicit gltf_blob(gltf_bytes bytes)
+        : own(std::move(bytes)), first(own.data()), count(own.size())
+    {
+    }
+    gltf_blob(gltf_blob &&) = default; /* a moved vector keeps its place */
+    gltf_blob &operator=(gltf_blob &&) = default;
+
+    const uint8_t *data() const { return first; }
+    size_t size() const { return count; }
+    bool empty() const { return count == 0; }
+
+private:
+    gltf_bytes own;
+    const uint8_t *first = nullptr;
+    size_t count = 0;
+};
+
 struct gltf_plain {
-    std::string text;               /* JSON; buffer n has the URI "n" */
-    std::vector<gltf_bytes> blobs;  /* what the buffers hold */
-    uint64_t byte_count = 0;        /* of the file and what lies beside it */
+    std::string text;             /* JSON without buffers */
+    std::vector<gltf_blob> blobs; /* which are these */
+    uint64_t byte_count = 0;      /* of the file and what lies beside it */
 };
 
 /* Reads the source's JSON and keeps what triangles and their attributes need:
@@ -79,7 +101,7 @@ uint32_t gltf_to_id(const gltf_item &item, const char *member,
                     const gltf_json &value, size_t limit);
 
 /* All that a buffer holds: of the BIN chunk, inline or beside the file. */
-gltf_bytes gltf_load_buffer(const gltf_source &source, const gltf_item &buffer);
+gltf_blob gltf_load_buffer(const gltf_source &source, const gltf_item &buffer);
 
 /* Whether geometry is complete without knowing the extension, which refers to
  * no accessor or view but where glTF itself does. */

@@ -96,7 +96,7 @@ private:
     const gltf_source &source;
     gltf_json in;
     std::vector<matrix> world;
-    std::map<uint32_t, gltf_bytes> buffers; /* loaded when needed */
+    std::map<uint32_t, gltf_blob> buffers; /* loaded when needed */
 
     const gltf_json &list(const char *name) const
     {
@@ -160,7 +160,7 @@ matrix measure::bind(const gltf_json &skin, size_t joint)
     const uint32_t buffer = view.id("buffer", list("buffers").size());
     if (buffer == GLTF_NONE || view.extension("EXT_meshopt_compression"))
         return out;
-    gltf_bytes &bytes = buffers[buffer];
+    gltf_blob &bytes = buffers[buffer];
     if (bytes.empty())
         bytes = gltf_load_buffer(
             source, { list("buffers")[buffer], "buffers", buffer });

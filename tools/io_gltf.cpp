@@ -32,6 +32,7 @@ using tinygltf::Model;
 /* What a gltf_model points into. */
 struct owner {
     Model model;
+    std::vector<gltf_blob> blobs;
     std::vector<gltf_accessor> accessors;
     std::vector<gltf_primitive> primitives;
     std::vector<gltf_mesh> meshes;
@@ -42,41 +43,12 @@ struct owner {
     std::vector<const char *> names;
 };
 
-/* tinygltf's "files" are the blobs; each is read once, so it is moved. */
-bool blob_exists(const std::string &, void *)
-{
-    return true;
-}
-
-std::string blob_name(const std::string &name, void *)
-{
-    return name;
-}
-
-bool blob_read(std::vector<unsigned char> *out, std::string *,
-               const std::string &name, void *user)
-{
-    auto &blobs = static_cast<gltf_plain *>(user)->blobs;
-    const size_t slash = name.find_last_of('/');
-    const size_t number =
-        std::stoul(slash == std::string::npos ? name : name.substr(slash + 1));
-    *out = std::move(blobs.at(number));
-    return true;
-}
-
-bool blob_write(std::string *, const std::string &,
-                const std::vector<unsigned char> &, void *)
-{
-    return false;
-}
-
-void load_model(gltf_plain &plain, Model *model)
+/* The text names no file and holds no buffer: nothing else is read. */
+void load_model(const gltf_plain &plain, Model *model)
 {
     tinygltf::TinyGLTF loader;
     std::string error, warning;
 
-    loader.SetFsCallbacks(
-        { blob_exists, blob_name, blob_read, blob_write, &plain });
     if (plain.text.size() > UINT32_MAX)
         throw std::runtime_error("the JSON part is too large");
     if (!loader.LoadASCIIFromString(
@@ -96,14 +68,14 @@ uint32_t to_id(int number, size_t limit)
     return static_cast<uint32_t>(number);
 }
 
-gltf_view view_from(const Model &model, int number, uint64_t offset,
+gltf_view view_from(const owner &o, int number, uint64_t offset,
                     uint32_t *stride)
 {
     if (number < 0)
         return { nullptr, 0 };
-    const BufferView &view = model.bufferViews.at(static_cast<size_t>(number));
-    const auto &data =
-        model.buffers.at(static_cast<size_t>(view.buffer)).data;
+    const BufferView &view =
+        o.model.bufferViews.at(static_cast<size_t>(number));
+    const gltf_blob &data = o.blobs.at(static_cast<size_t>(view.buffer));
     if (view.byteOffset > data.size() ||
         view.byteLength > data.size() - view.byteOffset ||
         offset > view.byteLength)
@@ -113,12 +85,12 @@ gltf_view view_from(const Model &model, int number, uint64_t offset,
     return { data.data() + view.byteOffset + offset, view.byteLength - offset };
 }
 
-gltf_accessor convert(const Model &model, const Accessor &from)
+gltf_accessor convert(const owner &o, const Accessor &from)
 {
     gltf_accessor to{};
 
     to.number = static_cast<uint32_t>(std::stoul(from.name));
-    to.view = view_from(model, from.bufferView, from.byteOffset, &to.stride);
+    to.view = view_from(o, from.bufferView, from.byteOffset, &to.stride);
     to.count = from.count;
     to.type = static_cast<uint32_t>(from.componentType);
     to.components = static_cast<uint8_t>(
@@ -130,10 +102,10 @@ gltf_accessor convert(const Model &model, const Accessor &from)
     to.sparse_count = static_cast<uint64_t>(sparse.count);
     to.sparse_type = static_cast<uint32_t>(sparse.indices.componentType);
     to.sparse_indices =
-        view_from(model, sparse.indices.bufferView,
+        view_from(o, sparse.indices.bufferView,
                   static_cast<uint64_t>(sparse.indices.byteOffset), nullptr);
     to.sparse_values =
-        view_from(model, sparse.values.bufferView,
+        view_from(o, sparse.values.bufferView,
                   static_cast<uint64_t>(sparse.values.byteOffset), nullptr);
     return to;
 }
@@ -227,8 +199,9 @@ void fill(const gltf_source &source, gltf_budget &budget, asset *warnings,
     gltf_plain plain = gltf_make_plain(source, budget, warnings);
 
     load_model(plain, &o->model);
+    o->blobs = std::move(plain.blobs);
     for (const Accessor &from : o->model.accessors)
-        o->accessors.push_back(convert(o->model, from));
+        o->accessors.push_back(convert(*o, from));
     convert_meshes(*o);
     convert_nodes(*o);
     convert_materials(*o);

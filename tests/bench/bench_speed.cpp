@@ -43,11 +43,6 @@
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
-#include <tiny_obj_loader.h>
-#define TINYGLTF_NO_STB_IMAGE
-#define TINYGLTF_NO_STB_IMAGE_WRITE
-#define TINYGLTF_NO_EXTERNAL_IMAGE
-#include <tiny_gltf.h>
 
 #include "decoder/pmesh_decode.h"
 #include "encoder/pmesh_encode.h"
@@ -55,33 +50,13 @@ extern "C" {
 #include "tools/load.h"
 #include "tools/sample.h"
 }
+#include "tests/bench/parsers.h"
 #include "tests/bench/peers.h"
 
 namespace {
 
 constexpr std::uint32_t base_faces = 100;
 constexpr int decode_bits = 12;
-
-using Bytes = std::vector<std::uint8_t>;
-
-void expect(bool good, const char *what)
-{
-    if (!good)
-        throw std::runtime_error(what);
-}
-
-double clock_ms(clockid_t clock)
-{
-    timespec now;
-    clock_gettime(clock, &now);
-    return 1e3 * static_cast<double>(now.tv_sec) +
-           1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-double cpu_ms()
-{
-    return clock_ms(CLOCK_PROCESS_CPUTIME_ID);
-}
 
 /* ---- memory ---- */
 
@@ -347,31 +322,6 @@ double decode_draco(const Bytes &bytes)
     return cpu_ms() - start;
 }
 
-double parse_tinyobj(const Bytes &file)
-{
-    std::istringstream in(std::string(file.begin(), file.end()));
-    tinyobj::attrib_t attributes;
-    std::vector<tinyobj::shape_t> shapes;
-    std::vector<tinyobj::material_t> materials;
-    std::string warning, error;
-    const double start = cpu_ms();
-    expect(tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error,
-                            &in), "tinyobjloader fails");
-    return cpu_ms() - start;
-}
-
-double parse_tinygltf(const Bytes &file)
-{
-    tinygltf::TinyGLTF loader;
-    tinygltf::Model model;
-    std::string error, warning;
-    const double start = cpu_ms();
-    expect(loader.LoadBinaryFromMemory(&model, &error, &warning, file.data(),
-                                       static_cast<unsigned>(file.size())),
-           "tinygltf fails");
-    return cpu_ms() - start;
-}
-
 /* ---- input ---- */
 
 Model model_of(const std::string &name, const asset &mesh)
@@ -518,6 +468,8 @@ const struct {
     { "decode / Draco", "decode", "draco", "<1", "<0.5" },
     { "parse OBJ / tinyobjloader", "obj", "tinyobj", "<1", "" },
     { "parse GLB / tinygltf", "glb", "tinygltf", "<1", "" },
+    { "parse GLB / tinygltf and arrays of doubles and checked indices", "glb",
+      "tinygltf-arrays", "", "" },
 };
 
 void line(const Model &m, const char *what, double ours, double peer,
@@ -568,6 +520,7 @@ void measure(int rounds, const Model &m, const Bytes &obj)
     contest.enter("tinyobj", [&] { return parse_tinyobj(obj); });
     contest.enter("glb", [&] { return parse(glb, ASSET_GLB); });
     contest.enter("tinygltf", [&] { return parse_tinygltf(glb); });
+    contest.enter("tinygltf-arrays", [&] { return unpack_tinygltf(glb); });
     contest.enter("ply", [&] { return parse(ply, ASSET_PLY); });
     contest.enter("ascii-ply", [&] { return parse(text, ASSET_PLY); });
     contest.run(rounds);
