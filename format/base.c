@@ -363,7 +363,7 @@ static pmesh_status settle(base *b)
 static base begin(pmesh_codec *c, uint32_t vertices, uint32_t faces)
 {
     const base b = { .c = c, .vertices = vertices, .faces = faces,
-                     .table = c->base_scratch,
+                     .table = c->scratch,
                      .mask = pmesh_base_scratch(faces) - 1 };
     for (uint64_t i = 0; i <= b.mask; i++)
         b.table[i] = PMESH_NONE;

@@ -132,6 +132,7 @@ typedef struct pmesh_codec {
     pmesh_codec_sizes sizes;
     pmesh_mesh mesh;
     pmesh_models models;
+    pmesh_place_models *place; /* [1] only if parents move: theirs */
     int32_t bounds[3]; /* largest coordinate of each axis */
     uint32_t component_max[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS];
     pmesh_channel channel[PMESH_MAX_ATTRIBUTES];
@@ -166,7 +167,7 @@ typedef struct pmesh_codec {
     int32_t (
         *unsplit)[3];     /* per split, if parents move: where the parent was */
     uint32_t *child_face; /* per split: its first new face */
-    uint32_t *importance; /* per split */
+    uint32_t *importance; /* per split, before face_order, which has its place */
     uint32_t *child_order;  /* per split, afterwards: its place in coding
                                order */
     uint32_t *face_order;   /* per face of the block, likewise */
@@ -175,9 +176,7 @@ typedef struct pmesh_codec {
     uint32_t *wedge_before; /* per wedge: the next lower one of its vertex, or
                                PMESH_NONE */
     uint32_t *wedge_last;   /* per vertex: its highest wedge, or PMESH_NONE */
-    uint32_t *scratch;      /* see rank.c, level.c */
-    void *cut_room;         /* see cut.c */
-    uint32_t *base_scratch; /* pmesh_base_scratch() numbers, for the base */
+    void *scratch;          /* see base.c, cut.c, rank.c */
 } pmesh_codec;
 
 static inline uint8_t pmesh_state(const pmesh_codec *c, uint32_t v)
@@ -193,6 +192,9 @@ static inline uint8_t pmesh_state(const pmesh_codec *c, uint32_t v)
  */
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *sizes,
                           void *block);
+
+/* Makes all models fresh, from other tables than pmesh_start. */
+void pmesh_codec_start(pmesh_codec *c, const pmesh_tables *start);
 
 /* Sets component_max and channel from the attributes. A generic one of four
  * components, the first three of which take negative values too, is taken for a
