@@ -10,30 +10,28 @@
 uint64_t dec_view_bind(dec_view *view, const pmesh_header_chunk *h, void *block)
 {
     const uint64_t sizes[] = {
-        3 * (uint64_t)h->sizes.faces * sizeof(uint32_t),
         ((uint64_t)h->sizes.vertices + 1) * sizeof(uint32_t),
         (uint64_t)h->moved_corners * sizeof(uint32_t),
         h->attribute_count ? (uint64_t)h->moved_corners * sizeof(uint32_t) : 0,
         h->sizes.moves ? 12 * (uint64_t)h->sizes.vertices : 0,
         h->sizes.moves ? 12 * (uint64_t)h->sizes.vertices : 0
     };
-    uint64_t at[7] = { 0 };
-    for (int i = 0; i < 6; i++)
+    uint64_t at[6] = { 0 };
+    for (int i = 0; i < 5; i++)
         at[i + 1] = at[i] + (sizes[i] + 15) / 16 * 16;
     if (!block)
-        return at[6];
+        return at[5];
 
     uint8_t *base = (uint8_t *)block;
-    *view = (dec_view){ .index = (void *)(base + at[0]),
-                        .moved_first = (void *)(base + at[1]),
-                        .moved = (void *)(base + at[2]) };
+    *view = (dec_view){ .moved_first = (void *)(base + at[0]),
+                        .moved = (void *)(base + at[1]) };
     if (h->attribute_count)
-        view->moved_wedge = (void *)(base + at[3]);
+        view->moved_wedge = (void *)(base + at[2]);
     if (h->sizes.moves) {
-        view->position = (void *)(base + at[4]);
-        view->other = (void *)(base + at[5]);
+        view->position = (void *)(base + at[3]);
+        view->other = (void *)(base + at[4]);
     }
-    return at[6];
+    return at[5];
 }
 
 void dec_view_start(pmesh_decoder *dec)
@@ -42,13 +40,12 @@ void dec_view_start(pmesh_decoder *dec)
     const pmesh_mesh *m = &c->mesh;
     dec_view *view = &dec->view;
 
-    memcpy(view->index, m->wedge ? m->wedge : m->vertex,
-           3 * (size_t)m->face_count * sizeof *view->index);
+    view->index = m->wedge ? m->wedge : m->vertex;
     if (view->position)
         memcpy(view->position, m->position,
                m->vertex_count * sizeof *view->position);
     view->moved_first[m->vertex_count] = 0;
-    view->vertices = view->decoded = m->vertex_count;
+    view->vertices = view->decoded = view->stands = m->vertex_count;
 }
 
 bool dec_view_append(pmesh_decoder *dec)
@@ -61,8 +58,6 @@ bool dec_view_append(pmesh_decoder *dec)
 
     for (uint32_t u = b->vertex; u < b->vertex + b->vertex_count; u++) {
         const uint32_t new_edge = 3 * c->child_face[u - b->vertex];
-        for (uint32_t h = new_edge; h < 3 * c->face_end[u]; h++)
-            view->index[h] = pmesh_birth_wedge(m, h, u);
         uint32_t start = m->first[u];
         for (uint32_t h = start; h != PMESH_NONE;
              h = pmesh_corner_next(m, &start, h)) {
@@ -76,13 +71,14 @@ bool dec_view_append(pmesh_decoder *dec)
             count++;
         }
         view->moved_first[u + 1] = count;
-        if (view->position) {
-            memcpy(view->position[u], m->position[u], sizeof *view->position);
-            memcpy(view->other[u], m->position[m->parent[u]],
-                   sizeof *view->other);
-        }
     }
-    view->decoded = m->vertex_count;
+    for (uint32_t u = b->vertex; view->position && u < m->vertex_count; u++) {
+        int32_t *at = view->position[m->parent[u]];
+        memcpy(view->position[u], m->position[u], sizeof *view->position);
+        memcpy(view->other[u], at, sizeof *view->other);
+        memcpy(at, m->position[m->parent[u]], sizeof *view->position);
+    }
+    view->decoded = view->stands = m->vertex_count;
     return true;
 }
 
@@ -142,17 +138,46 @@ static void note(pmesh_decoder *dec, uint32_t u)
         dec_touch(&dec->changed.moved, dec->codec.mesh.parent[u]);
 }
 
+static void stand(pmesh_decoder *dec, uint32_t target)
+{
+    dec_view *view = &dec->view;
+    for (; view->stands < target; view->stands++)
+        show(dec, view->stands);
+    for (; view->stands > target; view->stands--)
+        hide(dec, view->stands - 1);
+}
+
+void dec_view_raise(pmesh_decoder *dec)
+{
+    stand(dec, dec->view.decoded);
+}
+
+/* No vertex splits twice in a block: one step leads out of it. */
+void dec_view_restore(pmesh_decoder *dec)
+{
+    const pmesh_mesh *m = &dec->codec.mesh;
+    const uint32_t *parent = m->wedge ? m->wedge_parent : m->parent;
+    const uint32_t edges = 3 * dec_faces_at(dec, dec->view.decoded);
+    const uint32_t wedges = dec_wedges_at(dec, dec->view.decoded);
+    uint32_t *index = dec->view.index;
+    for (uint32_t h = 0; h < edges; h++)
+        if (index[h] >= wedges)
+            index[h] = parent[index[h]];
+}
+
+void dec_view_settle(const pmesh_decoder *dec)
+{
+    if (dec->view.stands != dec->view.vertices)
+        stand(dec->self, dec->view.vertices);
+}
+
 void dec_view_move(pmesh_decoder *dec, uint32_t target, bool noting)
 {
     dec_view *view = &dec->view;
-    for (; view->vertices < target; view->vertices++) {
-        show(dec, view->vertices);
-        if (noting)
-            note(dec, view->vertices);
-    }
-    for (; view->vertices > target; view->vertices--) {
-        hide(dec, view->vertices - 1);
-        if (noting)
-            note(dec, view->vertices - 1);
-    }
+    const uint32_t from = view->vertices;
+    const uint32_t end = target > from ? target : from;
+    for (uint32_t u = target + from - end; noting && u < end; u++)
+        note(dec, u);
+    view->vertices = target;
+    stand(dec, target);
 }
