@@ -19,17 +19,20 @@
 #include "format/exact.h"
 #include "format/header.h"
 
-/* The visible mesh and how to move it. Split u (a vertex number) shows the
- * faces up to codec.face_end[u] and gives u its moved corners: the entries
- * moved_first[u] .. moved_first[u + 1] - 1. */
+/* The visible mesh and how to move it. Split u (a vertex number) shows its
+ * faces and gives u its moved corners. These are listed split by split, each a
+ * half-edge in bytes apart: few meshes need more than three. */
 typedef struct dec_view {
     uint32_t vertices; /* visible mesh vertices */
     uint32_t decoded;  /* of those decoded: the most that can be visible */
     uint32_t stands;   /* where index and position are */
     uint32_t *index;   /* 3 per face: output vertices; behind the visible faces
                           the values that faces are born with */
-    uint32_t *moved_first; /* per vertex, and one more */
-    uint32_t *moved;       /* half-edges */
+    uint8_t *moved_count;   /* per vertex */
+    uint32_t moved;         /* corners of the splits below `stands` */
+    uint16_t *moved_low;    /* half-edges: */
+    uint8_t *moved_high;    /* the bits from 16 on, */
+    uint8_t *moved_highest; /* and from 24 on; NULL if there are none */
     uint32_t *moved_wedge; /* what they become; NULL without attributes: u */
     /* If parents move: the visible positions, and for each split the parent's
      * other position (beyond the split while it is not visible). */

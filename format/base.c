@@ -357,6 +357,9 @@ static pmesh_status settle(base *b)
     if (status != PMESH_OK)
         return status;
     count_neighbours(b->c);
+    memset(b->c->made_faces, 0, m->vertex_count * sizeof *b->c->made_faces);
+    for (uint32_t v = 0; v <= m->vertex_count; v += PMESH_FACE_MARK)
+        b->c->faces_before[v / PMESH_FACE_MARK] = m->face_count;
     return PMESH_OK;
 }
 

@@ -18,11 +18,24 @@ static void *carve(carver *k, uint64_t count, uint64_t size)
     return at;
 }
 
+static uint64_t largest(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
+}
+
 /* While the base of a joined mesh is coded, each fan is a vertex. */
 static uint64_t rows_of(const pmesh_codec_sizes *s)
 {
-    return s->joined && s->base_fans > s->vertices ? s->base_fans
-                                                   : s->vertices;
+    return s->joined ? largest(s->base_fans, s->vertices) : s->vertices;
+}
+
+/* Levels do not visit what they make, the last one least of all. */
+static uint64_t order_size(const pmesh_codec_sizes *s)
+{
+    if (!s->coarse_vertices)
+        return rows_of(s);
+    return s->joined ? largest(s->base_fans, s->coarse_vertices)
+                     : s->coarse_vertices;
 }
 
 static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)
@@ -49,11 +62,6 @@ static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)
     }
     if (s->material_count > 1)
         m->material = carve(k, s->faces, sizeof *m->material);
-}
-
-static uint64_t largest(uint64_t a, uint64_t b)
-{
-    return a > b ? a : b;
 }
 
 /* One after the other: the base, the options of cuts, ranking. */
@@ -86,10 +94,12 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     carver k = { (uint8_t *)block, 0 };
     carve_mesh(&k, &c->mesh, s);
     c->sizes = *s;
-    c->order = carve(&k, rows_of(s), sizeof *c->order);
+    c->order = carve(&k, order_size(s), sizeof *c->order);
     c->state = carve(&k, s->vertices, sizeof *c->state);
     c->near = carve(&k, s->vertices, sizeof *c->near);
-    c->face_end = carve(&k, s->vertices, sizeof *c->face_end);
+    c->made_faces = carve(&k, s->vertices, sizeof *c->made_faces);
+    c->faces_before = carve(&k, s->vertices / PMESH_FACE_MARK + 1,
+                            sizeof *c->faces_before);
     c->wedge_end = NULL;
     c->wedge_corner = c->wedge_order = NULL;
     c->wedge_before = c->wedge_last = NULL;

@@ -82,6 +82,7 @@ typedef struct pmesh_block {
 typedef struct pmesh_codec_sizes {
     uint32_t vertices, faces, wedges; /* at full detail */
     uint32_t base_faces;
+    uint32_t coarse_vertices; /* before the last level; 0: not known */
     uint32_t attribute_count;
     uint32_t value_count; /* coded components of a wedge; 0: no attributes */
     uint32_t material_count;
@@ -146,7 +147,8 @@ typedef struct pmesh_codec {
                                                        values, of the base too */
 
     /* Of the level. */
-    uint32_t *order; /* per vertex: the visit's order, as far as known */
+    uint32_t *order; /* per vertex that was there before it: the visit's order,
+                        as far as known */
     uint8_t *state;  /* per vertex: pmesh_visit */
     uint32_t level_vertex_count;
     uint32_t level_seed;   /* vertices below it are in the order */
@@ -157,8 +159,10 @@ typedef struct pmesh_codec {
     pmesh_near *near; /* per vertex */
 
     /* Of the vertex tree: what there is once a vertex is split off. */
-    uint32_t *face_end;  /* per vertex */
-    uint32_t *wedge_end; /* per vertex; NULL without attributes */
+    uint8_t *made_faces;    /* per vertex: faces of its split */
+    uint32_t *faces_before; /* of every PMESH_FACE_MARK-th vertex: faces before
+                               its split */
+    uint32_t *wedge_end;    /* per vertex; NULL without attributes */
 
     uint32_t wedge_limit; /* wedges that the base or the block may make */
 
@@ -182,6 +186,18 @@ typedef struct pmesh_codec {
 static inline uint8_t pmesh_state(const pmesh_codec *c, uint32_t v)
 {
     return c->state[v] & (PMESH_QUEUED - 1);
+}
+
+enum { PMESH_FACE_MARK = 32 };
+
+/* Faces of the mesh of the first n vertices; no fewer than those of the base. */
+static inline uint32_t pmesh_faces_at(const pmesh_codec *c, uint32_t n)
+{
+    uint32_t v = n - n % PMESH_FACE_MARK;
+    uint32_t faces = c->faces_before[v / PMESH_FACE_MARK];
+    for (; v < n; v++)
+        faces += c->made_faces[v];
+    return faces;
 }
 
 /*

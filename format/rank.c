@@ -99,7 +99,13 @@ static void rename_children(pmesh_codec *c)
         permute(c->unsplit, n, c->child_order, sizeof *c->unsplit);
 }
 
-/* face_order from child_order, and face_end; uses child_face in coding order
+static void mark_faces(pmesh_codec *c, uint32_t vertex, uint32_t faces)
+{
+    if (vertex % PMESH_FACE_MARK == 0)
+        c->faces_before[vertex / PMESH_FACE_MARK] = faces;
+}
+
+/* face_order from child_order, and what each split makes; uses child_face in coding order
  * and leaves it in the new order and numbering. */
 static void order_faces(pmesh_codec *c)
 {
@@ -110,10 +116,12 @@ static void order_faces(pmesh_codec *c)
         const uint32_t end = k + 1 < b->vertex_count ? c->child_face[k + 1]
                                                      : b->face + b->face_count;
         start[i] = b->face + face;
+        mark_faces(c, b->vertex + i, start[i]);
+        c->made_faces[b->vertex + i] = (uint8_t)(end - c->child_face[k]);
         for (uint32_t f = c->child_face[k]; f < end; f++)
             c->face_order[face++] = f - b->face;
-        c->face_end[b->vertex + i] = b->face + face;
     }
+    mark_faces(c, b->vertex + b->vertex_count, b->face + face);
     memcpy(c->child_face, start, b->vertex_count * sizeof *start);
 }
 
@@ -189,7 +197,8 @@ static void number_wedges(pmesh_codec *c, uint32_t *number)
         number[i] = PMESH_NONE;
     for (uint32_t u = b->vertex; u < b->vertex + b->vertex_count; u++) {
         const uint32_t face = c->child_face[u - b->vertex];
-        for (uint32_t h = 3 * face; h < 3 * c->face_end[u]; h++)
+        const uint32_t end = face + c->made_faces[u];
+        for (uint32_t h = 3 * face; h < 3 * end; h++)
             count_wedge(number, b, pmesh_birth_wedge(m, h, u), &next);
         uint32_t start = m->first[u];
         for (uint32_t h = start; h != PMESH_NONE;
