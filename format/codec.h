@@ -180,7 +180,7 @@ typedef struct pmesh_codec {
     uint32_t *wedge_before; /* per wedge: the next lower one of its vertex, or
                                PMESH_NONE */
     uint32_t *wedge_last;   /* per vertex: its highest wedge, or PMESH_NONE */
-    void *scratch;          /* see base.c, cut.c, rank.c */
+    uint32_t *scratch;      /* see base.c, cut.c, rank.c */
 } pmesh_codec;
 
 static inline uint8_t pmesh_state(const pmesh_codec *c, uint32_t v)
