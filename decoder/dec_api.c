@@ -38,6 +38,7 @@ pmesh_status pmesh_decoder_create(pmesh_decoder **out,
     pmesh_decoder *dec = pmesh_alloc_zero(&c.allocator, 1, sizeof *dec);
     if (!dec)
         return PMESH_E_MEMORY;
+    dec->self = dec;
     dec->allocator = c.allocator;
     dec->config = c;
     dec_frame_start(&dec->frame);
@@ -141,6 +142,7 @@ pmesh_status pmesh_decoder_mesh(const pmesh_decoder *dec, pmesh_view *out)
         return PMESH_NEED_DATA;
     const pmesh_mesh *m = &dec->codec.mesh;
     const dec_view *view = &dec->view;
+    dec_view_settle(dec);
     *out = (pmesh_view){
         .vertex_count = dec_wedges_at(dec, view->vertices),
         .mesh_vertex_count = view->vertices,

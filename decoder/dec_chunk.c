@@ -212,6 +212,20 @@ static pmesh_status take_base(pmesh_decoder *dec)
     return PMESH_OK;
 }
 
+static pmesh_status take_splits(pmesh_decoder *dec, pmesh_coder *coder,
+                                uint32_t splits)
+{
+    const pmesh_status status =
+        pmesh_block_code(&dec->codec, coder, NULL, splits);
+    if (status != PMESH_OK)
+        return fail(dec, status, dec->codec.rule);
+    if (!pmesh_coder_finish(coder))
+        return corrupt(dec, "SPEC 6.1: bytes behind a block");
+    return dec_view_append(dec)
+               ? PMESH_OK
+               : corrupt(dec, "SPEC 5.3: more moved corners than declared");
+}
+
 static pmesh_status take_block(pmesh_decoder *dec)
 {
     pmesh_cursor in = pmesh_cursor_make(dec->payload, dec->frame.size);
@@ -224,14 +238,12 @@ static pmesh_status take_block(pmesh_decoder *dec)
 
     pmesh_coder coder;
     pmesh_coder_decode(&coder, in.next, (size_t)(in.end - in.next));
-    const pmesh_status status =
-        pmesh_block_code(&dec->codec, &coder, NULL, splits);
-    if (status != PMESH_OK)
-        return fail(dec, status, dec->codec.rule);
-    if (!pmesh_coder_finish(&coder))
-        return corrupt(dec, "SPEC 6.1: bytes behind a block");
-    if (!dec_view_append(dec))
-        return corrupt(dec, "SPEC 5.3: more moved corners than declared");
+    dec_view_raise(dec);
+    const pmesh_status status = take_splits(dec, &coder, splits);
+    if (status != PMESH_OK) {
+        dec_view_restore(dec);
+        return status;
+    }
     return dec->frame.type == PMESH_CHUNK_BLOCK_LAST ? finish_level(dec) : PMESH_OK;
 }
 

@@ -58,6 +58,7 @@ pmesh_status pmesh_decoder_copy_positions(const pmesh_decoder *dec, float *dst,
     if (!dst || (stride && stride < sizeof xyz))
         return PMESH_E_ARGUMENT;
     const uint32_t count = visible_wedges(dec);
+    dec_view_settle(dec);
     for (uint32_t w = 0; w < count; w++) {
         dec_position(dec, dec_mesh_vertex(dec, w), xyz);
         memcpy(tuple(dst, stride, sizeof xyz, w), xyz, sizeof xyz);
@@ -161,6 +162,7 @@ pmesh_status pmesh_decoder_copy_indices(const pmesh_decoder *dec, void *dst,
     if (!dst || !index_size_fits(dec, index_size))
         return PMESH_E_ARGUMENT;
     const uint32_t faces = dec_faces_at(dec, dec->view.vertices);
+    dec_view_settle(dec);
     if (groups && dec->codec.mesh.material) {
         copy_sorted(dec, dst, index_size, groups);
         return PMESH_OK;
@@ -237,6 +239,7 @@ pmesh_status pmesh_decoder_bind(pmesh_decoder *dec,
     dec->buffers = *buffers;
     if (!dec->has_base)
         return PMESH_OK;
+    dec_view_settle(dec);
     if (buffers->indices)
         pmesh_decoder_copy_indices(dec, buffers->indices, buffers->index_size,
                                    NULL);

@@ -2,10 +2,13 @@
 /*
  * dec_internal.h - the decoder's state.
  *
- * The codec's mesh is always as fine as what was decoded. The visible mesh is
- * the file's first n vertices; its index buffer is kept beside the codec and
- * moves up and down by lists made once, when a block is decoded. A corner that
- * names a vertex beyond the first n names the nearest ancestor among them.
+ * The codec's mesh is as fine as what was decoded. The visible mesh is the
+ * file's first n vertices; its index buffer is the codec's own array of corners,
+ * which moves up and down by lists made once, when a block is decoded. A corner
+ * that names a vertex beyond the first n names the nearest ancestor among them.
+ * To decode a block the array is moved up to all there is; where the visible
+ * mesh is coarser it goes back when somebody looks (dec_view_settle()), so that
+ * feeding alone never moves it.
  */
 #ifndef DEC_INTERNAL_H
 #define DEC_INTERNAL_H
@@ -16,16 +19,20 @@
 #include "format/exact.h"
 #include "format/header.h"
 
-/* The visible mesh and how to move it. Split u (a vertex number) shows the
- * faces up to codec.face_end[u] and gives u its moved corners: the entries
- * moved_first[u] .. moved_first[u + 1] - 1. */
+/* The visible mesh and how to move it. Split u (a vertex number) shows its
+ * faces and gives u its moved corners. These are listed split by split, each a
+ * half-edge in bytes apart: few meshes need more than three. */
 typedef struct dec_view {
     uint32_t vertices; /* visible mesh vertices */
     uint32_t decoded;  /* of those decoded: the most that can be visible */
+    uint32_t stands;   /* where index and position are */
     uint32_t *index;   /* 3 per face: output vertices; behind the visible faces
                           the values that faces are born with */
-    uint32_t *moved_first; /* per vertex, and one more */
-    uint32_t *moved;       /* half-edges */
+    uint8_t *moved_count;   /* per vertex */
+    uint32_t moved;         /* corners of the splits below `stands` */
+    uint16_t *moved_low;    /* half-edges: */
+    uint8_t *moved_high;    /* the bits from 16 on, */
+    uint8_t *moved_highest; /* and from 24 on; NULL if there are none */
     uint32_t *moved_wedge; /* what they become; NULL without attributes: u */
     /* If parents move: the visible positions, and for each split the parent's
      * other position (beyond the split while it is not visible). */
@@ -43,6 +50,7 @@ typedef struct dec_changed {
 } dec_changed;
 
 struct pmesh_decoder {
+    pmesh_decoder *self; /* for dec_view_settle() */
     pmesh_allocator allocator;
     pmesh_decoder_config config;
     dec_frame frame;
@@ -69,6 +77,16 @@ struct pmesh_decoder {
 /* Bytes and layout of the view's arrays, as pmesh_codec_bind(). */
 uint64_t dec_view_bind(dec_view *view, const pmesh_header_chunk *header,
                        void *block);
+
+/* Makes room for the codec: all that is decoded, in the codec's arrays. */
+void dec_view_raise(pmesh_decoder *dec);
+
+/* Takes back what a block that failed did to the index. */
+void dec_view_restore(pmesh_decoder *dec);
+
+/* The index becomes that of the visible mesh. Behind the back of functions that
+ * only look: a decoder is used by one thread at a time. */
+void dec_view_settle(const pmesh_decoder *dec);
 
 /* Makes the base mesh visible. */
 void dec_view_start(pmesh_decoder *dec);

@@ -21,8 +21,13 @@
  * corners next to a split are rewritten. With subset placement a vertex never
  * changes once it is there, but for the exact position of a lossless file.
  *
- * Two allocations: the handle, and one block when the header is known. At most
+ * Two allocations: the handle, and one block when the header is known: 53 to 60
+ * bytes a face of meshes of 30,000 faces and more without attributes. At most
  * 64 KiB of stack.
+ *
+ * The visible mesh is moved up and down in the memory of what is decoded. To
+ * feed() while a coarser one is looked at after each call costs, for each, the
+ * time of two refine() between them; to feed() and only then to look, nothing.
  * No globals, threads, files, or floating point before dequantisation: the
  * result depends on the bytes alone, on every compiler and CPU.
  */

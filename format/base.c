@@ -357,13 +357,16 @@ static pmesh_status settle(base *b)
     if (status != PMESH_OK)
         return status;
     count_neighbours(b->c);
+    memset(b->c->made_faces, 0, m->vertex_count * sizeof *b->c->made_faces);
+    for (uint32_t v = 0; v <= m->vertex_count; v += PMESH_FACE_MARK)
+        b->c->faces_before[v / PMESH_FACE_MARK] = m->face_count;
     return PMESH_OK;
 }
 
 static base begin(pmesh_codec *c, uint32_t vertices, uint32_t faces)
 {
     const base b = { .c = c, .vertices = vertices, .faces = faces,
-                     .table = c->base_scratch,
+                     .table = c->scratch,
                      .mask = pmesh_base_scratch(faces) - 1 };
     for (uint64_t i = 0; i <= b.mask; i++)
         b.table[i] = PMESH_NONE;

@@ -18,11 +18,24 @@ static void *carve(carver *k, uint64_t count, uint64_t size)
     return at;
 }
 
+static uint64_t largest(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
+}
+
 /* While the base of a joined mesh is coded, each fan is a vertex. */
 static uint64_t rows_of(const pmesh_codec_sizes *s)
 {
-    return s->joined && s->base_fans > s->vertices ? s->base_fans
-                                                   : s->vertices;
+    return s->joined ? largest(s->base_fans, s->vertices) : s->vertices;
+}
+
+/* Levels do not visit what they make, the last one least of all. */
+static uint64_t order_size(const pmesh_codec_sizes *s)
+{
+    if (!s->coarse_vertices)
+        return rows_of(s);
+    return s->joined ? largest(s->base_fans, s->coarse_vertices)
+                     : s->coarse_vertices;
 }
 
 static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)
@@ -51,13 +64,28 @@ static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)
         m->material = carve(k, s->faces, sizeof *m->material);
 }
 
-static void start_models(pmesh_codec *c)
+/* One after the other: the base, the options of cuts, ranking. */
+static uint64_t scratch_size(const pmesh_codec_sizes *s)
 {
-    pmesh_models_init(&c->models, &pmesh_start);
+    const uint64_t base = pmesh_base_scratch(s->base_faces);
+    return largest(pmesh_cut_room(), sizeof(uint32_t) *
+                                         largest(base, pmesh_rank_scratch(s)));
+}
+
+void pmesh_codec_start(pmesh_codec *c, const pmesh_tables *start)
+{
+    pmesh_models_init(&c->models, start);
+    pmesh_place_models_init(&c->place[0],
+                            c->sizes.moves ? PMESH_PREDICT_MOVED_CHILD
+                                           : PMESH_PREDICT_CHILD,
+                            start);
+    if (c->sizes.moves)
+        pmesh_place_models_init(&c->place[1], PMESH_PREDICT_MOVED_PARENT,
+                                start);
     for (uint32_t i = 0; i < c->sizes.attribute_count; i++)
-        pmesh_channel_models_init(&c->channel_models[i], &pmesh_start);
+        pmesh_channel_models_init(&c->channel_models[i], start);
     for (uint32_t i = 0; i < c->sizes.value_count; i++)
-        pmesh_value_models_init(&c->value_models[i], &pmesh_start);
+        pmesh_value_models_init(&c->value_models[i], start);
 }
 
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
@@ -66,10 +94,12 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     carver k = { (uint8_t *)block, 0 };
     carve_mesh(&k, &c->mesh, s);
     c->sizes = *s;
-    c->order = carve(&k, rows_of(s), sizeof *c->order);
+    c->order = carve(&k, order_size(s), sizeof *c->order);
     c->state = carve(&k, s->vertices, sizeof *c->state);
     c->near = carve(&k, s->vertices, sizeof *c->near);
-    c->face_end = carve(&k, s->vertices, sizeof *c->face_end);
+    c->made_faces = carve(&k, s->vertices, sizeof *c->made_faces);
+    c->faces_before = carve(&k, s->vertices / PMESH_FACE_MARK + 1,
+                            sizeof *c->faces_before);
     c->wedge_end = NULL;
     c->wedge_corner = c->wedge_order = NULL;
     c->wedge_before = c->wedge_last = NULL;
@@ -80,6 +110,7 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
         c->wedge_last = carve(&k, rows_of(s), sizeof *c->wedge_last);
         c->wedge_order = carve(&k, s->block_wedges, sizeof *c->wedge_order);
     }
+    c->place = carve(&k, s->moves ? 2 : 1, sizeof *c->place);
     c->channel_models =
         carve(&k, s->attribute_count, sizeof *c->channel_models);
     c->value_models = carve(&k, s->value_count, sizeof *c->value_models);
@@ -87,15 +118,13 @@ uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *s,
     if (s->moves)
         c->unsplit = carve(&k, s->block_splits, sizeof *c->unsplit);
     c->child_face = carve(&k, s->block_splits, sizeof *c->child_face);
-    c->importance = carve(&k, s->block_splits, sizeof *c->importance);
     c->child_order = carve(&k, s->block_splits, sizeof *c->child_order);
-    c->face_order = carve(&k, pmesh_block_faces(s), sizeof *c->face_order);
-    c->scratch = carve(&k, pmesh_rank_scratch(s), sizeof *c->scratch);
-    c->cut_room = carve(&k, 1, pmesh_cut_room());
-    c->base_scratch = carve(&k, pmesh_base_scratch(s->base_faces),
-                            sizeof *c->base_scratch);
+    c->face_order = carve(&k, largest(s->block_splits, pmesh_block_faces(s)),
+                          sizeof *c->face_order);
+    c->importance = c->face_order;
+    c->scratch = carve(&k, 1, scratch_size(s));
     if (block)
-        start_models(c);
+        pmesh_codec_start(c, &pmesh_start);
     return k.used;
 }
 

@@ -82,6 +82,7 @@ typedef struct pmesh_block {
 typedef struct pmesh_codec_sizes {
     uint32_t vertices, faces, wedges; /* at full detail */
     uint32_t base_faces;
+    uint32_t coarse_vertices; /* before the last level; 0: not known */
     uint32_t attribute_count;
     uint32_t value_count; /* coded components of a wedge; 0: no attributes */
     uint32_t material_count;
@@ -132,6 +133,7 @@ typedef struct pmesh_codec {
     pmesh_codec_sizes sizes;
     pmesh_mesh mesh;
     pmesh_models models;
+    pmesh_place_models *place; /* [1] only if parents move: theirs */
     int32_t bounds[3]; /* largest coordinate of each axis */
     uint32_t component_max[PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS];
     pmesh_channel channel[PMESH_MAX_ATTRIBUTES];
@@ -145,7 +147,8 @@ typedef struct pmesh_codec {
                                                        values, of the base too */
 
     /* Of the level. */
-    uint32_t *order; /* per vertex: the visit's order, as far as known */
+    uint32_t *order; /* per vertex that was there before it: the visit's order,
+                        as far as known */
     uint8_t *state;  /* per vertex: pmesh_visit */
     uint32_t level_vertex_count;
     uint32_t level_seed;   /* vertices below it are in the order */
@@ -156,8 +159,10 @@ typedef struct pmesh_codec {
     pmesh_near *near; /* per vertex */
 
     /* Of the vertex tree: what there is once a vertex is split off. */
-    uint32_t *face_end;  /* per vertex */
-    uint32_t *wedge_end; /* per vertex; NULL without attributes */
+    uint8_t *made_faces;    /* per vertex: faces of its split */
+    uint32_t *faces_before; /* of every PMESH_FACE_MARK-th vertex: faces before
+                               its split */
+    uint32_t *wedge_end;    /* per vertex; NULL without attributes */
 
     uint32_t wedge_limit; /* wedges that the base or the block may make */
 
@@ -166,7 +171,7 @@ typedef struct pmesh_codec {
     int32_t (
         *unsplit)[3];     /* per split, if parents move: where the parent was */
     uint32_t *child_face; /* per split: its first new face */
-    uint32_t *importance; /* per split */
+    uint32_t *importance; /* per split, before face_order, which has its place */
     uint32_t *child_order;  /* per split, afterwards: its place in coding
                                order */
     uint32_t *face_order;   /* per face of the block, likewise */
@@ -175,14 +180,24 @@ typedef struct pmesh_codec {
     uint32_t *wedge_before; /* per wedge: the next lower one of its vertex, or
                                PMESH_NONE */
     uint32_t *wedge_last;   /* per vertex: its highest wedge, or PMESH_NONE */
-    uint32_t *scratch;      /* see rank.c, level.c */
-    void *cut_room;         /* see cut.c */
-    uint32_t *base_scratch; /* pmesh_base_scratch() numbers, for the base */
+    uint32_t *scratch;      /* see base.c, cut.c, rank.c */
 } pmesh_codec;
 
 static inline uint8_t pmesh_state(const pmesh_codec *c, uint32_t v)
 {
     return c->state[v] & (PMESH_QUEUED - 1);
+}
+
+enum { PMESH_FACE_MARK = 32 };
+
+/* Faces of the mesh of the first n vertices; no fewer than those of the base. */
+static inline uint32_t pmesh_faces_at(const pmesh_codec *c, uint32_t n)
+{
+    uint32_t v = n - n % PMESH_FACE_MARK;
+    uint32_t faces = c->faces_before[v / PMESH_FACE_MARK];
+    for (; v < n; v++)
+        faces += c->made_faces[v];
+    return faces;
 }
 
 /*
@@ -193,6 +208,9 @@ static inline uint8_t pmesh_state(const pmesh_codec *c, uint32_t v)
  */
 uint64_t pmesh_codec_bind(pmesh_codec *c, const pmesh_codec_sizes *sizes,
                           void *block);
+
+/* Makes all models fresh, from other tables than pmesh_start. */
+void pmesh_codec_start(pmesh_codec *c, const pmesh_tables *start);
 
 /* Sets component_max and channel from the attributes. A generic one of four
  * components, the first three of which take negative values too, is taken for a

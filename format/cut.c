@@ -686,7 +686,7 @@ void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
     s.open = ring->open;
     s.drop = pmesh_bit_length(s.n);
     s.weights = &c->models.cut_weights;
-    s.list = (options *)c->cut_room;
+    s.list = (options *)(void *)c->scratch;
     place_points(&s, c, v, ring);
     measure(&s);
     weigh_wings(&s, c, ring);

@@ -9,7 +9,7 @@
 
 #include "format/codec.h"
 
-/* Bytes of cut_room. */
+/* Bytes of scratch that pmesh_cut_code() needs. */
 uint64_t pmesh_cut_room(void);
 
 /* Codes the cut of `v`, whose ring is given; what comes out is legal. */

@@ -193,6 +193,8 @@ static const char *read_levels(pmesh_cursor *in, pmesh_header_chunk *h)
     h->sizes.base_faces = h->levels[0].faces;
     h->base_vertices = h->levels[0].vertices;
     h->base_wedges = h->levels[0].wedges;
+    h->sizes.coarse_vertices =
+        h->levels[h->level_count > 1 ? h->level_count - 2 : 0].vertices;
     h->sizes.faces = last.faces;
     h->sizes.vertices = last.vertices;
     h->sizes.wedges = last.wedges;

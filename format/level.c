@@ -266,11 +266,6 @@ static int32_t clamp(int64_t value, int32_t limit)
     return value < 0 ? 0 : value > limit ? limit : (int32_t)value;
 }
 
-static pmesh_predict_kind child_kind(const pmesh_codec *c)
-{
-    return c->sizes.moves ? PMESH_PREDICT_MOVED_CHILD : PMESH_PREDICT_CHILD;
-}
-
 /* NULL if the ring is too large. */
 static const pmesh_site *find_site(const pmesh_codec *c, uint32_t v,
                                    uint32_t partner, pmesh_site *site)
@@ -278,48 +273,23 @@ static const pmesh_site *find_site(const pmesh_codec *c, uint32_t v,
     return pmesh_site_find(c, v, partner, site) ? site : NULL;
 }
 
-static uint32_t *kept_site(const pmesh_codec *c, uint32_t u)
-{
-    return c->scratch + (size_t)PMESH_KEPT_SITE * (u - c->block.vertex);
-}
-
 static const pmesh_ring *ring_of(const pmesh_site *site)
 {
     return site ? &site->ring : NULL;
 }
 
-/* Connectivity is complete now: what is known of every child's ring, and a
- * better guess where it will be. */
+/* Connectivity is complete now: a better guess where every child will be. */
 static void guess_positions(pmesh_codec *c)
 {
     const uint32_t begin = c->block.vertex;
     for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        pmesh_site space;
-        const pmesh_site *site = find_site(c, u, c->mesh.parent[u], &space);
-        pmesh_site_keep(site, kept_site(c, u));
-        if (!site)
-            continue;
+        pmesh_ring ring;
         int32_t position[3];
-        pmesh_guess(c, u, &site->ring, position);
-        pmesh_place(c, u, &site->ring, position);
+        if (!pmesh_ring_gather(&c->mesh, u, &ring))
+            continue;
+        pmesh_guess(c, u, &ring, position);
+        pmesh_place(c, u, &ring, position);
     }
-}
-
-/* Its ring lies anywhere in memory, even that of the next child. */
-static void prefetch_site(const pmesh_codec *c, uint32_t u)
-{
-    if (u < c->block.vertex + c->block.vertex_count)
-        pmesh_site_prefetch(c, kept_site(c, u));
-}
-
-static const pmesh_site *take_site(const pmesh_codec *c, uint32_t u,
-                                   pmesh_site *site)
-{
-    enum { AHEAD = 4 };
-    prefetch_site(c, u + AHEAD);
-    return pmesh_site_kept(kept_site(c, u), site)
-               ? site
-               : find_site(c, u, c->mesh.parent[u], site);
 }
 
 /* How far, in 1/16 steps, u lies above or below its parent: what the surface
@@ -335,15 +305,16 @@ static uint32_t importance_of(const pmesh_mesh *m, uint32_t u,
     return size > UINT32_MAX ? UINT32_MAX : (uint32_t)size;
 }
 
-/* Codes the final position of x, a child (which 0) or a moved parent (1). */
+/* Codes the final position of x, a child or a moved parent. */
 static bool code_position(pmesh_codec *c, pmesh_coder *coder,
-                          const pmesh_oracle *oracle, int which, uint32_t x,
+                          const pmesh_oracle *oracle,
+                          pmesh_place_models *models, uint32_t x,
                           const pmesh_ring *ring, pmesh_prediction *p)
 {
     int32_t position[3] = { 0, 0, 0 };
     if (oracle)
         oracle->position(oracle->user, x, position);
-    if (!pmesh_residual_code(c, coder, which, p, position))
+    if (!pmesh_residual_code(c, coder, models, p, position))
         return false;
     pmesh_place(c, x, ring, position);
     return true;
@@ -362,8 +333,8 @@ static bool code_moved_parent(pmesh_codec *c, pmesh_coder *coder,
     for (int k = 0; k < 3; k++) /* parent and child part about evenly */
         mirrored[k] =
             clamp(2 * (int64_t)before[k] - m->position[u][k], c->bounds[k]);
-    pmesh_predict(c, PMESH_PREDICT_MOVED_PARENT, v, site, mirrored, u + 1, &p);
-    return code_position(c, coder, oracle, 1, v, ring_of(site), &p);
+    pmesh_predict(c, &c->place[1], v, site, mirrored, u + 1, &p);
+    return code_position(c, coder, oracle, &c->place[1], v, ring_of(site), &p);
 }
 
 static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
@@ -374,10 +345,11 @@ static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
     for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
         const uint32_t v = m->parent[u];
         pmesh_site space;
-        const pmesh_site *site = take_site(c, u, &space);
+        const pmesh_site *site = find_site(c, u, v, &space);
         pmesh_prediction p;
-        pmesh_predict(c, child_kind(c), u, site, m->position[v], u, &p);
-        if (!code_position(c, coder, oracle, 0, u, ring_of(site), &p))
+        pmesh_predict(c, &c->place[0], u, site, m->position[v], u, &p);
+        if (!code_position(c, coder, oracle, &c->place[0], u, ring_of(site),
+                           &p))
             return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
         c->importance[u - begin] = importance_of(m, u, m->position[v], &p);
         if (c->sizes.moves && !code_moved_parent(c, coder, oracle, u))

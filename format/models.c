@@ -82,9 +82,8 @@ static void cut_init(pmesh_cut_weights *w, const pmesh_tables *start)
     weights_init((int32_t *)w->span, start->span, COUNT(w->span, int32_t), 256);
 }
 
-static void predict_init(pmesh_models *m, const pmesh_tables *start)
+static void predict_init(pmesh_place_models *m, const int16_t *from)
 {
-    const int16_t *from = start->predict;
     pmesh_fit(*fit)[2] = (pmesh_fit(*)[2])m->predict;
     for (size_t i = 0; i < COUNT(m->predict, *fit); i++) {
         pmesh_fit_init(&fit[i][0], from, 2);
@@ -99,19 +98,29 @@ void pmesh_models_init(pmesh_models *m, const pmesh_tables *start)
     pmesh_bits_start((pmesh_bit *)m->cut, COUNT(m->cut, pmesh_bit),
                      start->rank);
     cut_init(&m->cut_weights, start);
-    predict_init(m, start);
     INIT_BITS(m->base);
     pmesh_bits_init(&m->base_sign, 1);
     pmesh_number_init(&m->base_vertex);
     pmesh_number_init(&m->base_position);
     wedge_init(&m->wedge);
     join_init(&m->join);
-    residual_init(&m->residual[0], start);
-    residual_init(&m->residual[1], start);
-    means_init((pmesh_mean *)m->along, start->along,
-               COUNT(m->along, pmesh_mean), ALONG_START);
-    means_init((pmesh_mean *)m->across, start->across,
-               COUNT(m->across, pmesh_mean), ACROSS_START);
+}
+
+void pmesh_place_models_init(pmesh_place_models *m, pmesh_predict_kind kind,
+                             const pmesh_tables *start)
+{
+    enum {
+        FITS = COUNT(m->predict, pmesh_fit),
+        ALONG = COUNT(m->along, pmesh_mean),
+        ACROSS = COUNT(m->across, pmesh_mean)
+    };
+    const bool parent = kind == PMESH_PREDICT_MOVED_PARENT;
+    predict_init(m, start->predict + (size_t)kind * FITS * PMESH_FIT_TERMS);
+    residual_init(&m->residual, start);
+    means_init((pmesh_mean *)m->along, start->along + (parent ? ALONG : 0),
+               ALONG, ALONG_START);
+    means_init((pmesh_mean *)m->across, start->across + (parent ? ACROSS : 0),
+               ACROSS, ACROSS_START);
 }
 
 void pmesh_channel_models_init(pmesh_channel_models *m,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * models.h - every adaptive model of a stream. They start from tables and live
- * from the base mesh to the last block. Those of attributes are apart, as many
- * as a stream has attributes.
+ * from the base mesh to the last block. Those of positions and of attributes are
+ * apart, as many as a stream needs.
  */
 #ifndef PMESH_MODELS_H
 #define PMESH_MODELS_H
@@ -36,6 +36,23 @@ typedef struct pmesh_mean {
     uint32_t value;
     uint32_t uses;
 } pmesh_mean;
+
+/* What is predicted: the row of the tables. */
+typedef enum pmesh_predict_kind {
+    PMESH_PREDICT_CHILD = 0,       /* its parent stays where it is */
+    PMESH_PREDICT_MOVED_CHILD = 1, /* its parent is yet to move */
+    PMESH_PREDICT_MOVED_PARENT = 2 /* its child is known */
+} pmesh_predict_kind;
+
+/* Of vertices of one kind. */
+typedef struct pmesh_place_models {
+    /* Weights of the predictor's terms, along the surface and across it; they
+     * start from the tables. */
+    pmesh_fit predict[PMESH_PREDICT_CLASSES][PMESH_UNKNOWN][2];
+    pmesh_residual_model residual;
+    pmesh_mean along[PMESH_PREDICT_CLASSES][PMESH_UNKNOWN][PMESH_IRREGULAR];
+    pmesh_mean across[PMESH_ROUGH][PMESH_UNKNOWN];
+} pmesh_place_models;
 
 /* Attributes (SPEC 6.6). */
 enum {
@@ -97,13 +114,6 @@ typedef struct pmesh_models {
     pmesh_bit flag[PMESH_FLAG_CONTEXTS];
     pmesh_bit cut[2][PMESH_CUT_RANKS][PMESH_CUT_ODDS];
     pmesh_cut_weights cut_weights;
-    /* Weights of the predictor's terms, along the surface and across it; they
-     * start from the tables. */
-    pmesh_fit predict[PMESH_PREDICT_KINDS][PMESH_PREDICT_CLASSES][PMESH_UNKNOWN]
-                     [2];
-    pmesh_residual_model residual[2]; /* of a child, of a moved parent */
-    pmesh_mean along[2][PMESH_PREDICT_CLASSES][PMESH_UNKNOWN][PMESH_IRREGULAR];
-    pmesh_mean across[2][PMESH_ROUGH][PMESH_UNKNOWN];
     pmesh_bit base[3][2];
     pmesh_number base_vertex;
     pmesh_number base_position;
@@ -113,6 +123,8 @@ typedef struct pmesh_models {
 } pmesh_models;
 
 void pmesh_models_init(pmesh_models *m, const pmesh_tables *start);
+void pmesh_place_models_init(pmesh_place_models *m, pmesh_predict_kind kind,
+                             const pmesh_tables *start);
 void pmesh_channel_models_init(pmesh_channel_models *m,
                                const pmesh_tables *start);
 void pmesh_value_models_init(pmesh_value_models *m, const pmesh_tables *start);

@@ -93,39 +93,6 @@ bool pmesh_site_find(const pmesh_codec *c, uint32_t x, uint32_t partner,
     return true;
 }
 
-/* count, open, partner by bytes; beyond; the ring. */
-void pmesh_site_keep(const pmesh_site *s, uint32_t kept[PMESH_KEPT_SITE])
-{
-    kept[0] = 0;
-    if (!s || s->ring.count > PMESH_KEPT_RING)
-        return;
-    kept[0] = s->ring.count | (uint32_t)s->ring.open << 8 | s->partner << 16;
-    memcpy(kept + 1, s->beyond, sizeof s->beyond);
-    memcpy(kept + 5, s->ring.vertex, PMESH_KEPT_RING * sizeof *kept);
-}
-
-bool pmesh_site_kept(const uint32_t kept[PMESH_KEPT_SITE], pmesh_site *s)
-{
-    s->ring.count = kept[0] & 0xff;
-    s->ring.open = kept[0] >> 8 & 1;
-    s->ring.face_count = s->ring.count - s->ring.open;
-    s->partner = kept[0] >> 16;
-    memcpy(s->beyond, kept + 1, sizeof s->beyond);
-    memcpy(s->ring.vertex, kept + 5, PMESH_KEPT_RING * sizeof *kept);
-    return s->ring.count > 0;
-}
-
-void pmesh_site_prefetch(const pmesh_codec *c,
-                         const uint32_t kept[PMESH_KEPT_SITE])
-{
-    const uint32_t n = kept[0] & 0xff;
-    for (uint32_t i = 0; i < n; i++) {
-        const uint32_t y = kept[5 + i];
-        pmesh_prefetch(&c->near[y]);
-        pmesh_prefetch(c->mesh.position[y]);
-    }
-}
-
 /* ---- guesses ------------------------------------------------------------ */
 
 /* If its parent stays, the mean of the ring, moved against the way that the
@@ -368,7 +335,7 @@ static void add_terms(pmesh_prediction *p, const int32_t bounds[3])
     }
 }
 
-void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
+void pmesh_predict(pmesh_codec *c, pmesh_place_models *models, uint32_t x,
                    const pmesh_site *site, const int32_t partner_position[3],
                    uint32_t provisional, pmesh_prediction *out)
 {
@@ -385,7 +352,7 @@ void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
     walk_ring(c, &s, &by, ring, x, out->base, provisional, &w);
     make_terms(c, &s, site, &by, &w, out);
     classify(&s, ring, &w, out);
-    out->fit = c->models.predict[kind][out->ring_class][out->unknown];
+    out->fit = models->predict[out->ring_class][out->unknown];
     add_terms(out, c->bounds);
 }
 

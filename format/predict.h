@@ -14,13 +14,6 @@
 
 #include "format/codec.h"
 
-/* What is predicted: the row of pmesh_predict_weight. */
-typedef enum pmesh_predict_kind {
-    PMESH_PREDICT_CHILD = 0,       /* its parent stays where it is */
-    PMESH_PREDICT_MOVED_CHILD = 1, /* its parent is yet to move */
-    PMESH_PREDICT_MOVED_PARENT = 2 /* its child is known */
-} pmesh_predict_kind;
-
 typedef struct pmesh_prediction {
     int64_t position[3]; /* 1/16 grid steps */
     int32_t normal[3];   /* unit vector in 1/16384; zero if there is none */
@@ -39,16 +32,9 @@ typedef struct pmesh_prediction {
     int32_t height[PMESH_FIT_TERMS + 1];  /* they should have added up to */
 } pmesh_prediction;
 
-enum {
-    PMESH_KEPT_RING = 8,                  /* rings up to this size are kept, */
-    PMESH_KEPT_SITE = 5 + PMESH_KEPT_RING /* in so many numbers */
-};
-
-/* Where a prediction is made: what it needs of connectivity. Walking there from
- * half-edge to half-edge waits for memory, so it is kept for the second time.
- */
+/* Where a prediction is made: what it needs of connectivity. */
 typedef struct pmesh_site {
-    pmesh_ring ring;  /* of one that was kept, without edges */
+    pmesh_ring ring;
     uint32_t partner; /* place in the ring; the last if it is not there */
     /* Opposite of x in the rings of the partner and of the member that lies
      * opposite of the partner: two vertices, maybe the same, or PMESH_NONE. */
@@ -59,14 +45,6 @@ typedef struct pmesh_site {
 bool pmesh_site_find(const pmesh_codec *c, uint32_t x, uint32_t partner,
                      pmesh_site *s);
 
-/* `kept` gives the site back, or false if it was NULL or had a larger ring. */
-void pmesh_site_keep(const pmesh_site *s, uint32_t kept[PMESH_KEPT_SITE]);
-bool pmesh_site_kept(const uint32_t kept[PMESH_KEPT_SITE], pmesh_site *s);
-
-/* Fetches what prediction will read. */
-void pmesh_site_prefetch(const pmesh_codec *c,
-                         const uint32_t kept[PMESH_KEPT_SITE]);
-
 /* A guess at the position of x while its neighbours' are guesses, too. */
 void pmesh_guess(const pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
                  int32_t position[3]);
@@ -75,7 +53,7 @@ void pmesh_guess(const pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
  * the other vertex of its split, this position is known; members of the ring
  * from `provisional` on (by number) have no final position yet; no partner is.
  */
-void pmesh_predict(pmesh_codec *c, pmesh_predict_kind kind, uint32_t x,
+void pmesh_predict(pmesh_codec *c, pmesh_place_models *models, uint32_t x,
                    const pmesh_site *site, const int32_t partner_position[3],
                    uint32_t provisional, pmesh_prediction *out);
 

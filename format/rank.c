@@ -3,21 +3,14 @@
 
 #include <string.h>
 
-#include "format/predict.h"
-
 enum { DIGIT_BITS = 8, DIGITS = 1 << DIGIT_BITS };
 
 uint64_t pmesh_rank_scratch(const pmesh_codec_sizes *sizes)
 {
-    const uint64_t splits = sizes->block_splits, wedges = sizes->block_wedges;
-    /* The largest user: four numbers a face, a split's site (predict.h), or a
-     * wedge's map, its three numbers and its values. */
-    const uint64_t for_faces = 4 * pmesh_block_faces(sizes);
-    const uint64_t for_splits = PMESH_KEPT_SITE * splits;
-    const uint64_t for_wedges = wedges * (4 + sizes->value_count);
-    uint64_t most = for_faces > for_wedges ? for_faces : for_wedges;
-    most = most > for_splits ? most : for_splits;
-    return most + 2 * splits;
+    const uint64_t faces = pmesh_block_faces(sizes);
+    uint64_t most = sizes->block_splits;
+    most = most > faces ? most : faces;
+    return most > sizes->block_wedges ? most : sizes->block_wedges;
 }
 
 /* A 16-bit key that grows with value: 5 bits of exponent, 11 of mantissa. */
@@ -58,32 +51,30 @@ static void sort_children(pmesh_codec *c)
     memcpy(c->child_order, source, n * sizeof *source);
 }
 
-/* Reorders `count` items of `size` numbers: item i comes from order[i]. */
-static void permute(uint32_t *items, uint32_t count, uint32_t size,
-                    const uint32_t *order, uint32_t *scratch)
+/* Reorders `count` items of `size` <= MOST_SIZE bytes: item i comes from
+ * order[i]. In place, cycle by cycle; which places are done is marked in the
+ * order itself, which is afterwards as before. */
+static inline void permute(void *items, uint32_t count, uint32_t *order,
+                           size_t size)
 {
-    memcpy(scratch, items, (size_t)count * size * sizeof *items);
+    enum { MOST_SIZE = 2 * PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS };
+    const uint32_t done = UINT32_C(1) << 31;
+    uint8_t *at = (uint8_t *)items, first[MOST_SIZE];
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t to = i, from = order[i];
+        if (from & done)
+            continue;
+        memcpy(first, at + i * size, size);
+        for (; from != i; from = order[to]) {
+            memcpy(at + to * size, at + from * size, size);
+            order[to] = from | done;
+            to = from;
+        }
+        memcpy(at + to * size, first, size);
+        order[to] = i | done;
+    }
     for (uint32_t i = 0; i < count; i++)
-        memcpy(items + (size_t)i * size, scratch + (size_t)order[i] * size,
-               size * sizeof *items);
-}
-
-static void permute_positions(int32_t (*items)[3], uint32_t count,
-                              const uint32_t *order, uint32_t *scratch)
-{
-    int32_t(*copy)[3] = (int32_t(*)[3])scratch;
-    memcpy(copy, items, count * sizeof *items);
-    for (uint32_t i = 0; i < count; i++)
-        memcpy(items[i], copy[order[i]], sizeof *items);
-}
-
-static void permute_near(pmesh_near *items, uint32_t count,
-                         const uint32_t *order, uint32_t *scratch)
-{
-    pmesh_near *copy = (pmesh_near *)scratch;
-    memcpy(copy, items, count * sizeof *items);
-    for (uint32_t i = 0; i < count; i++)
-        items[i] = copy[order[i]];
+        order[i] &= ~done;
 }
 
 /* Names the children by rank in every half-edge that starts at them. */
@@ -100,15 +91,21 @@ static void rename_children(pmesh_codec *c)
              h = pmesh_corner_next(m, &start, h))
             m->vertex[h] = first + rank[k];
     }
-    permute(m->first + first, n, 1, c->child_order, c->scratch);
-    permute(m->parent + first, n, 1, c->child_order, c->scratch);
-    permute_near(c->near + first, n, c->child_order, c->scratch);
-    permute_positions(m->position + first, n, c->child_order, c->scratch);
+    permute(m->first + first, n, c->child_order, sizeof *m->first);
+    permute(m->parent + first, n, c->child_order, sizeof *m->parent);
+    permute(c->near + first, n, c->child_order, sizeof *c->near);
+    permute(m->position + first, n, c->child_order, sizeof *m->position);
     if (c->sizes.moves)
-        permute_positions(c->unsplit, n, c->child_order, c->scratch);
+        permute(c->unsplit, n, c->child_order, sizeof *c->unsplit);
 }
 
-/* face_order from child_order, and face_end; uses child_face in coding order
+static void mark_faces(pmesh_codec *c, uint32_t vertex, uint32_t faces)
+{
+    if (vertex % PMESH_FACE_MARK == 0)
+        c->faces_before[vertex / PMESH_FACE_MARK] = faces;
+}
+
+/* face_order from child_order, and what each split makes; uses child_face in coding order
  * and leaves it in the new order and numbering. */
 static void order_faces(pmesh_codec *c)
 {
@@ -119,10 +116,12 @@ static void order_faces(pmesh_codec *c)
         const uint32_t end = k + 1 < b->vertex_count ? c->child_face[k + 1]
                                                      : b->face + b->face_count;
         start[i] = b->face + face;
+        mark_faces(c, b->vertex + i, start[i]);
+        c->made_faces[b->vertex + i] = (uint8_t)(end - c->child_face[k]);
         for (uint32_t f = c->child_face[k]; f < end; f++)
             c->face_order[face++] = f - b->face;
-        c->face_end[b->vertex + i] = b->face + face;
     }
+    mark_faces(c, b->vertex + b->vertex_count, b->face + face);
     memcpy(c->child_face, start, b->vertex_count * sizeof *start);
 }
 
@@ -155,19 +154,19 @@ static void rename_faces(pmesh_codec *c)
     pmesh_mesh *m = &c->mesh;
     const uint32_t begin = c->block.face, n = c->block.face_count;
     const uint32_t edge = 3 * begin;
-    uint32_t *now = c->scratch + 3 * (size_t)n, *scratch = c->scratch;
+    uint32_t *now = c->scratch;
 
     for (uint32_t i = 0; i < n; i++)
         now[c->face_order[i]] = begin + i;
     rename_starts(c, now);
-    permute(m->vertex + edge, n, 3, c->face_order, scratch);
-    permute(m->twin + edge, n, 3, c->face_order, scratch);
+    permute(m->vertex + edge, n, c->face_order, 3 * sizeof *m->vertex);
+    permute(m->twin + edge, n, c->face_order, 3 * sizeof *m->twin);
     if (m->fan)
-        permute(m->fan + edge, n, 3, c->face_order, scratch);
+        permute(m->fan + edge, n, c->face_order, 3 * sizeof *m->fan);
     if (m->wedge)
-        permute(m->wedge + edge, n, 3, c->face_order, scratch);
+        permute(m->wedge + edge, n, c->face_order, 3 * sizeof *m->wedge);
     if (m->material)
-        permute(m->material + begin, n, 1, c->face_order, scratch);
+        permute(m->material + begin, n, c->face_order, sizeof *m->material);
 
     for (uint32_t h = edge; h < edge + 3 * n; h++) {
         const uint32_t t = m->twin[h];
@@ -198,7 +197,8 @@ static void number_wedges(pmesh_codec *c, uint32_t *number)
         number[i] = PMESH_NONE;
     for (uint32_t u = b->vertex; u < b->vertex + b->vertex_count; u++) {
         const uint32_t face = c->child_face[u - b->vertex];
-        for (uint32_t h = 3 * face; h < 3 * c->face_end[u]; h++)
+        const uint32_t end = face + c->made_faces[u];
+        for (uint32_t h = 3 * face; h < 3 * end; h++)
             count_wedge(number, b, pmesh_birth_wedge(m, h, u), &next);
         uint32_t start = m->first[u];
         for (uint32_t h = start; h != PMESH_NONE;
@@ -217,18 +217,6 @@ static uint32_t renamed(const uint32_t *number, const pmesh_block *b,
                         uint32_t w)
 {
     return w == PMESH_NONE || w < b->wedge ? w : number[w - b->wedge];
-}
-
-static void permute_values(pmesh_codec *c, uint32_t *scratch)
-{
-    const pmesh_block *b = &c->block;
-    const uint32_t n = c->mesh.value_count;
-    uint16_t *copy = (uint16_t *)scratch;
-    uint16_t *value = c->mesh.value + (size_t)b->wedge * n;
-    memcpy(copy, value, (size_t)b->wedge_count * n * sizeof *copy);
-    for (uint32_t i = 0; i < b->wedge_count; i++)
-        memcpy(value + (size_t)i * n, copy + (size_t)c->wedge_order[i] * n,
-               n * sizeof *value);
 }
 
 /* Takes the block's wedges out of their vertices' lists. */
@@ -256,7 +244,7 @@ static void rename_wedges(pmesh_codec *c)
 {
     pmesh_mesh *m = &c->mesh;
     const pmesh_block *b = &c->block;
-    uint32_t *number = c->scratch, *scratch = c->scratch + b->wedge_count;
+    uint32_t *number = c->scratch;
 
     unlist_wedges(c);
     number_wedges(c, number);
@@ -273,13 +261,14 @@ static void rename_wedges(pmesh_codec *c)
             if (h < 3 * b->face)
                 m->wedge[h] = renamed(number, b, m->wedge[h]);
     }
-    permute(m->wedge_vertex + b->wedge, b->wedge_count, 1, c->wedge_order,
-            scratch);
-    permute(m->wedge_parent + b->wedge, b->wedge_count, 1, c->wedge_order,
-            scratch);
+    permute(m->wedge_vertex + b->wedge, b->wedge_count, c->wedge_order,
+            sizeof *m->wedge_vertex);
+    permute(m->wedge_parent + b->wedge, b->wedge_count, c->wedge_order,
+            sizeof *m->wedge_parent);
     for (uint32_t w = b->wedge; w < b->wedge + b->wedge_count; w++)
         m->wedge_parent[w] = renamed(number, b, m->wedge_parent[w]);
-    permute_values(c, scratch);
+    permute(m->value + (size_t)b->wedge * m->value_count, b->wedge_count,
+            c->wedge_order, m->value_count * sizeof *m->value);
 }
 
 void pmesh_block_rank(pmesh_codec *c)

@@ -13,7 +13,7 @@ uint64_t pmesh_rank_scratch(const pmesh_codec_sizes *sizes);
 
 /* Sorts the block's splits by c->importance, largest first, earlier ones first
  * among equals, and renumbers vertices, faces and wedges accordingly; fills
- * child_order, face_order, wedge_order, face_end and wedge_end. */
+ * child_order, face_order, wedge_order, made_faces and wedge_end. */
 void pmesh_block_rank(pmesh_codec *c);
 
 #endif

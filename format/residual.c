@@ -222,13 +222,12 @@ static void learn_errors(const gauss *g, const int64_t d[3], pmesh_mean *along,
     learn(across, (uint64_t)(height < 0 ? -height : height), size, per);
 }
 
-bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
-                         pmesh_prediction *p, int32_t position[3])
+bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder,
+                         pmesh_place_models *m, pmesh_prediction *p,
+                         int32_t position[3])
 {
-    pmesh_models *m = &c->models;
-    pmesh_mean *along =
-        &m->along[which][p->ring_class][p->unknown][p->irregular];
-    pmesh_mean *across = &m->across[which][p->rough][p->unknown];
+    pmesh_mean *along = &m->along[p->ring_class][p->unknown][p->irregular];
+    pmesh_mean *across = &m->across[p->rough][p->unknown];
     const uint32_t wide = expected(along, p->size);
     const uint32_t high = expected(across, p->size);
     coordinate at = { .far = 0 };
@@ -243,7 +242,7 @@ bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
         const int64_t variance = k < 2 ? gauss_variance(&g, k) : ONE;
         at.mean = p->position[a] + gauss_expect(&g, k, variance, &at.scale);
         const int64_t value =
-            code_coordinate(coder, &m->residual[which], &at, position[a]);
+            code_coordinate(coder, &m->residual, &at, position[a]);
         if (value < 0 || value > c->bounds[a])
             return false;
         position[a] = (int32_t)value;

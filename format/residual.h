@@ -34,9 +34,10 @@ unsigned pmesh_deviation_scale(uint64_t deviation, unsigned count);
  * PMESH_FAR. */
 unsigned pmesh_how_far(int64_t off, unsigned scale);
 
-/* Codes `position` (in and out) and learns from the outcome; `which` is 0 for
- * a child and 1 for a moved parent. Decoding: false if it leaves the bounds. */
-bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder, int which,
-                         pmesh_prediction *p, int32_t position[3]);
+/* Codes `position` (in and out) and learns from the outcome. Decoding: false if
+ * it leaves the bounds. */
+bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder,
+                         pmesh_place_models *m, pmesh_prediction *p,
+                         int32_t position[3]);
 
 #endif

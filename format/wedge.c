@@ -407,14 +407,18 @@ static pmesh_status code_wedges(pmesh_codec *c, pmesh_coder *coder,
                 status = corrupt(c, "SPEC 6.6: an ordinary split without a "
                                     "wedge to go on with");
         }
-        return status;
+    } else {
+        status = code_child(c, coder, oracle, &d, coarse);
+        for (uint32_t i = 0; i < d.others && status == PMESH_OK; i++)
+            status =
+                code_corner(c, coder, oracle, d.at[i], d.guess[i], d.second[i],
+                            3 * seam_at(m, d.child_edge[i], u) +
+                                seam_at(m, d.parent_edge[i], m->parent[u]));
     }
-    status = code_child(c, coder, oracle, &d, coarse);
-    for (uint32_t i = 0; i < d.others && status == PMESH_OK; i++)
-        status = code_corner(c, coder, oracle, d.at[i], d.guess[i],
-                             d.second[i],
-                             3 * seam_at(m, d.child_edge[i], u) +
-                                 seam_at(m, d.parent_edge[i], m->parent[u]));
+    /* The decoder still shows the faces that were there before. */
+    for (uint32_t i = 0; i < d.count && status != PMESH_OK; i++)
+        if (d.coarse[i] != PMESH_NONE)
+            m->wedge[d.at_u[i]] = d.coarse[i];
     return status;
 }
 

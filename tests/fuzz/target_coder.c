@@ -68,9 +68,9 @@ static int64_t walk(pmesh_coder *c, models *m, const step *s, int64_t value)
 static models *fresh(void)
 {
     models *m = fuzz_room(sizeof *m);
-    pmesh_models *all = fuzz_room(sizeof *all);
-    pmesh_models_init(all, &pmesh_start);
-    m->residual = all->residual[0];
+    pmesh_place_models *all = fuzz_room(sizeof *all);
+    pmesh_place_models_init(all, PMESH_PREDICT_CHILD, &pmesh_start);
+    m->residual = all->residual;
     free(all);
     pmesh_bits_init(m->bit, 16);
     pmesh_bits_init(m->tree[0], sizeof m->tree / sizeof **m->tree);

@@ -38,8 +38,8 @@ typedef struct totals {
     sums rank[2 * PMESH_CUT_RANKS * PMESH_CUT_ODDS];
     sums any[RESIDUAL_BITS];
     sums low[PMESH_SCALES * 3];
-    sums along[2 * PMESH_PREDICT_CLASSES * 3 * PMESH_IRREGULAR];
-    sums across[2 * PMESH_ROUGH * 3];
+    sums along[2][PMESH_PREDICT_CLASSES * 3 * PMESH_IRREGULAR];
+    sums across[2][PMESH_ROUGH * 3];
 } totals;
 
 static void add(sums *s, double value, double weight)
@@ -63,27 +63,29 @@ static void add_means(sums *s, const pmesh_mean *means, size_t count)
         add(&s[i], log(means[i].value + 1.0), means[i].uses);
 }
 
+static void add_place(totals *t, const pmesh_place_models *m,
+                      pmesh_predict_kind kind)
+{
+    const int which = kind == PMESH_PREDICT_MOVED_PARENT;
+    const pmesh_residual_model *r = &m->residual;
+    const pmesh_fit *fit = &m->predict[0][0][0];
+    sums *s = &t->predict[kind][0][0][0][0];
+    for (size_t i = 0; i < sizeof m->predict / sizeof *fit; i++)
+        for (int k = 0; k < PMESH_FIT_TERMS; k++)
+            add(s++, fit[i].weight[k], fit[i].count < 500 ? fit[i].count : 500);
+    add_bits(t->any, (const pmesh_bit *)r->any, RESIDUAL_BITS);
+    add_bits(t->low, r->low[0], PMESH_SCALES * 3);
+    add_means(t->along[which], &m->along[0][0][0], COUNT(t->along[0]));
+    add_means(t->across[which], &m->across[0][0], COUNT(t->across[0]));
+}
+
 static void add_models(totals *t, const pmesh_models *m)
 {
     const int32_t *cut = (const int32_t *)&m->cut_weights;
     for (size_t i = 0; i < sizeof t->cut / sizeof *t->cut; i++)
         add(&t->cut[i], cut[i], 1);
-    sums *s = &t->predict[0][0][0][0][0];
-    const pmesh_fit *fit = &m->predict[0][0][0][0];
-    for (size_t i = 0; i < sizeof m->predict / sizeof *fit; i++)
-        for (int k = 0; k < PMESH_FIT_TERMS; k++)
-            add(s++, fit[i].weight[k], fit[i].count < 500 ? fit[i].count : 500);
     add_bits(t->flag, m->flag, PMESH_FLAG_CONTEXTS);
     add_bits(t->rank, m->cut[0][0], sizeof m->cut / sizeof(pmesh_bit));
-    for (int which = 0; which < 2; which++) {
-        const pmesh_residual_model *r = &m->residual[which];
-        add_bits(t->any, (const pmesh_bit *)r->any, RESIDUAL_BITS);
-        add_bits(t->low, r->low[0], PMESH_SCALES * 3);
-    }
-    add_means(t->along, &m->along[0][0][0][0],
-              sizeof m->along / sizeof(pmesh_mean));
-    add_means(t->across, &m->across[0][0][0],
-              sizeof m->across / sizeof(pmesh_mean));
 }
 
 /* ---- tables from averages ------------------------------------------------ */
@@ -146,8 +148,8 @@ static void set_tables(pmesh_tables *to, const totals *t)
     set_bits(to->rank, t->rank, COUNT(to->rank));
     set_bits(to->residual, t->any, COUNT(to->residual));
     set_bits(to->low, t->low, COUNT(to->low));
-    set_means(to->along, t->along, COUNT(to->along));
-    set_means(to->across, t->across, COUNT(to->across));
+    set_means(to->along, t->along[0], COUNT(to->along));
+    set_means(to->across, t->across[0], COUNT(to->across));
 }
 
 /* ---- coding ---------------------------------------------------------------
@@ -190,9 +192,13 @@ static pmesh_status run(const pmesh_mesh_input *in,
                                config->placement == PMESH_OPTIMAL);
     if (status != PMESH_OK)
         return status;
-    pmesh_models_init(&replay.codec.models, start);
+    pmesh_codec_start(&replay.codec, start);
     status = code(&replay, config, &schedule, room);
     add_models(sum, &replay.codec.models);
+    if (replay.moves)
+        add_place(sum, &replay.codec.place[1], PMESH_PREDICT_MOVED_PARENT);
+    add_place(sum, &replay.codec.place[0],
+              replay.moves ? PMESH_PREDICT_MOVED_CHILD : PMESH_PREDICT_CHILD);
     enc_replay_destroy(&replay);
     enc_schedule_destroy(&schedule);
     enc_mesh_destroy(&mesh);
