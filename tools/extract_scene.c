@@ -79,7 +79,7 @@ static int choose(job *j)
                      "what is there reaches %g", r->error, j->shown.error);
         return CMD_BOUND;
     }
-    j->shown.faces = scene_budget_drawn(&j->budget, &target);
+    j->shown.faces = scene_budget_drawn(&j->budget);
     return CMD_DONE;
 }
 

@@ -44,12 +44,26 @@ void scene_budget_close(scene_budget *budget)
     *budget = (scene_budget){ 0 };
 }
 
-uint64_t scene_budget_drawn(const scene_budget *b,
-                            const pmesh_scene_target *target)
+uint64_t scene_budget_drawn(const scene_budget *b)
 {
     uint64_t drawn = 0;
+    pmesh_view view;
 
-    pmesh_scene_share(b->scene, target, b->share);
+    for (uint32_t i = 0; i < b->mesh_count; i++) {
+        const pmesh_decoder *dec = pmesh_scene_mesh(b->scene, i);
+        if (dec && pmesh_decoder_mesh(dec, &view) == PMESH_OK)
+            drawn += b->instances[i] * view.face_count;
+    }
+    return drawn;
+}
+
+/* Faces drawn at most if the decoder may show `stored` of them. */
+static uint64_t most_drawn(const scene_budget *b, uint64_t stored)
+{
+    const pmesh_scene_target target = { .faces = stored };
+    uint64_t drawn = 0;
+
+    pmesh_scene_share(b->scene, &target, b->share);
     for (uint32_t i = 0; i < b->mesh_count; i++)
         drawn += b->instances[i] * b->share[i];
     return drawn;
@@ -64,8 +78,7 @@ uint64_t scene_budget_stored(const scene_budget *b, uint64_t faces)
         return 0;
     while (over - fits > 1) {
         const uint64_t middle = fits + (over - fits) / 2;
-        const pmesh_scene_target target = { .faces = middle };
-        if (scene_budget_drawn(b, &target) <= faces)
+        if (most_drawn(b, middle) <= faces)
             fits = middle;
         else
             over = middle;

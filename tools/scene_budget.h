@@ -38,9 +38,8 @@ bool scene_budget_open(pmesh_scene *scene, scene_budget *out,
 
 void scene_budget_close(scene_budget *budget);
 
-/* Faces drawn when the scene is refined to a target. */
-uint64_t scene_budget_drawn(const scene_budget *budget,
-                            const pmesh_scene_target *target);
+/* Faces drawn of what is visible now. */
+uint64_t scene_budget_drawn(const scene_budget *budget);
 
 /* The largest pmesh_scene_target.faces that draws at most `faces`, or 1, the
  * base meshes, if these are too many; 0, no bound, for 0. */
