@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <stdexcept>
 
@@ -251,6 +252,10 @@ bool asset_read_drc(const uint8_t *data, size_t size, asset *out,
 
 namespace {
 
+/* Draco takes the difference of two values as a float, and if that is infinite
+ * writes out of bounds. */
+constexpr float largest = std::numeric_limits<float>::max() / 2;
+
 /* Points and faces of the mesh to write; positions that no face uses stay
  * behind, for they would stretch the grid. */
 void add_positions(const asset &mesh, const corners &table, draco::Mesh *out)
@@ -275,7 +280,7 @@ void add_positions(const asset &mesh, const corners &table, draco::Mesh *out)
         float v[3];
         for (size_t k = 0; k < 3; k++) {
             v[k] = static_cast<float>(mesh.positions[3 * size_t{used[i]} + k]);
-            if (!std::isfinite(v[k]))
+            if (!(std::fabs(v[k]) <= largest))
                 throw std::runtime_error("a position is too large for .drc");
         }
         a->SetAttributeValue(
@@ -318,6 +323,9 @@ void add_attribute(const asset &mesh, const asset_attribute &from,
         for (unsigned k = 0; k < n; k++) {
             if (!std::isfinite(v[k]))
                 v[k] = 0.0f;
+            if (!(std::fabs(v[k]) <= largest))
+                throw std::runtime_error("an attribute's value is too large "
+                                         "for .drc");
             bytes[k] = to_byte(v[k]);
         }
         a->SetAttributeValue(at, color ? static_cast<const void *>(bytes)
