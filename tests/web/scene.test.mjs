@@ -19,21 +19,30 @@ const native = (file, ...target) => Number(/(\d+) of \d+ faces/.exec(
 
 test("budgets show as many faces as native code", async () => {
     assert.ok(files.length > 5);
+    let compared = 0;
     for (const file of files) {
         const scene = await openScene(readFileSync(file));
         await scene.load();
         const { header } = scene;
         assert.equal(scene.faceCount, header.faces);
+        /* The program counts what is drawn, a budget here what is decoded. */
+        const once = native(file) === header.faces;
+        compared += once;
         for (const part of [0, 0.3, 0.5, 0.9]) {
             const faces = Math.max(1, Math.floor(part * header.faces));
             scene.refine({ faces });
-            assert.equal(scene.faceCount,
-                native(file, "--faces", String(faces)), `${file} ${faces}`);
+            if (once)
+                assert.equal(scene.faceCount,
+                    native(file, "--faces", String(faces)), `${file} ${faces}`);
+            else
+                assert.ok(scene.faceCount <=
+                    Math.max(faces, header.levels[0].faces));
         }
         const { error } = header.levels[header.levels.length >> 1];
         scene.refine({ error });
         assert.ok(scene.error <= error);
     }
+    assert.ok(compared > 5);
 });
 
 test("the golden scene is decoded whole, with any document", async () => {
