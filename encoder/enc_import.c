@@ -361,6 +361,8 @@ static pmesh_status run_import(enc_importer *im)
 
     status = load_mesh(im);
     if (!status)
+        status = enc_order(im);
+    if (!status)
         status = enc_make_manifold(im);
     if (!status)
         status = enc_wedges(im->mesh, im->in, im->config, im->source,

@@ -4,6 +4,7 @@
  *
  *   enc_import.c      checks, drops faces, numbers, quantises positions
  *   enc_weld.c        equal (or close) positions become one vertex
+ *   enc_order.c       numbers by place
  *   enc_manifold.c    drops repeated faces, counts pieces, and calls
  *     enc_pair.c      half-edges become twins, repeated faces are found
  *     enc_cut.c       one vertex per fan
@@ -94,7 +95,7 @@ typedef struct enc_importer {
     uint32_t *number; /* per input vertex: the least one it is welded to, then
                          its vertex, before cutting; ENC_NONE if not in use */
     uint32_t *first;  /* set of input vertices: the least of each vertex */
-    uint32_t *source; /* per face: which one of the input, ascending */
+    uint32_t *source; /* per face: which one of the input */
     size_t source_count;
 } enc_importer;
 
@@ -109,6 +110,10 @@ typedef struct enc_importer {
 pmesh_status enc_weld(const pmesh_allocator *allocator,
                       const pmesh_mesh_input *in, double distance,
                       bool lossless, uint32_t *root, uint32_t *zero_twins);
+
+/* Numbers the vertices and faces of a large mesh so that neighbours in space
+ * have close numbers. */
+pmesh_status enc_order(enc_importer *im);
 
 /* Faces and positions are there; takes out repeated faces, makes the twins and
  * the vertices that are missing for a manifold. */

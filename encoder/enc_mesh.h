@@ -72,8 +72,9 @@ typedef struct enc_mesh {
  * finite (counted in the report), welds equal positions, quantises positions
  * and attributes, cuts what is not manifold.
  *
- * Faces and vertices keep the input's order as far as they survive: a vertex
- * counts as its first input vertex in use; those that cutting adds come last.
+ * Faces and vertices of small meshes keep the input's order as far as they
+ * survive (a vertex counts as its first input vertex in use), those of large
+ * ones get one by place; vertices that cutting adds come last.
  *
  * report: not NULL; sets the grid, all counts of the input and of the full
  * detail, and error_index. They add up:
