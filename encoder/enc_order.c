@@ -3,9 +3,11 @@
  * enc_order.c - neighbours in space become neighbours in memory. Vertices are
  * numbered along a space-filling curve (Morton), faces by the least of their
  * vertices: whatever order the input has, the encoder's walks stay in the
- * cache. Scans and scattered exports take a third to a half less time.
+ * cache.
  */
 #include "encoder/enc_import.h"
+
+#include <string.h>
 
 #include "format/alloc.h"
 

@@ -159,7 +159,8 @@ typedef struct pmesh_codec {
     pmesh_near *near; /* per vertex */
 
     /* Of the vertex tree: what there is once a vertex is split off. */
-    uint8_t *made_faces;    /* per vertex: faces of its split */
+    uint8_t *made_faces;    /* per vertex: faces of its split, at most two for
+                               each part and each lone one */
     uint32_t *faces_before; /* of every PMESH_FACE_MARK-th vertex: faces before
                                its split */
     uint32_t *wedge_end;    /* per vertex; NULL without attributes */

@@ -105,8 +105,8 @@ static void mark_faces(pmesh_codec *c, uint32_t vertex, uint32_t faces)
         c->faces_before[vertex / PMESH_FACE_MARK] = faces;
 }
 
-/* face_order from child_order, and what each split makes; uses child_face in coding order
- * and leaves it in the new order and numbering. */
+/* face_order from child_order, and what each split makes; uses child_face in
+ * coding order and leaves it in the new order and numbering. */
 static void order_faces(pmesh_codec *c)
 {
     const pmesh_block *b = &c->block;

@@ -51,7 +51,7 @@ std::vector<size_t> scene_writer::free_list(const char *name)
 }
 
 /* As text, at most as long as a document may be. */
-void scene_read_document(const pmesh_scene *scene, asset_bytes *plain)
+static void read_document(const pmesh_scene *scene, asset_bytes *plain)
 {
     const pmesh_scene_bytes text = pmesh_scene_document(scene);
     const auto size = static_cast<size_t>(text.size);
@@ -66,7 +66,7 @@ void scene_read_document(const pmesh_scene *scene, asset_bytes *plain)
         throw std::runtime_error("the document cannot be unpacked");
 }
 
-void scene_writer::open()
+gltf_document scene_document(const pmesh_scene *scene)
 {
     asset_bytes plain = {};
     const std::unique_ptr<asset_bytes, void (*)(asset_bytes *)> text(
@@ -75,11 +75,16 @@ void scene_writer::open()
     asset unused = {};
     asset_error error;
 
-    scene_read_document(scene, &plain);
+    read_document(scene, &plain);
     if (!gltf_open(plain.data, plain.size, &source, &unused, &error))
         throw std::runtime_error(std::string("the document is no glTF: ") +
                                  error.what);
-    doc = gltf_document::parse(source.json, source.json + source.json_size);
+    return gltf_document::parse(source.json, source.json + source.json_size);
+}
+
+void scene_writer::open()
+{
+    doc = scene_document(scene);
     /* Members of the root must not come or go from now on: references into an
      * ordered document would not survive it. */
     for (const char *list : { "accessors", "bufferViews", "buffers" })

@@ -13,9 +13,9 @@
 #include "tools/scene_geometry.h"
 #include "tools/scene_write.h"
 
-/* The document as text, at most as long as one may be. Throws
- * std::runtime_error while it has not arrived. */
-void scene_read_document(const pmesh_scene *scene, asset_bytes *plain);
+/* Throws std::runtime_error while the document has not arrived, or if it is no
+ * glTF. */
+gltf_document scene_document(const pmesh_scene *scene);
 
 #define GLTF_DRACO "KHR_draco_mesh_compression"
 

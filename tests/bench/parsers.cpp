@@ -16,6 +16,15 @@
 
 namespace {
 
+void load(const Bytes &file, tinygltf::Model *model)
+{
+    tinygltf::TinyGLTF loader;
+    std::string error, warning;
+    expect(loader.LoadBinaryFromMemory(model, &error, &warning, file.data(),
+                                       static_cast<unsigned>(file.size())),
+           "tinygltf fails");
+}
+
 /* Where an accessor's elements lie, `size` bytes each without gaps. */
 const unsigned char *elements(const tinygltf::Model &model, int number,
                               std::size_t size, std::size_t *count)
@@ -63,25 +72,17 @@ double parse_tinyobj(const Bytes &file)
 
 double parse_tinygltf(const Bytes &file)
 {
-    tinygltf::TinyGLTF loader;
     tinygltf::Model model;
-    std::string error, warning;
     const double start = cpu_ms();
-    expect(loader.LoadBinaryFromMemory(&model, &error, &warning, file.data(),
-                                       static_cast<unsigned>(file.size())),
-           "tinygltf fails");
+    load(file, &model);
     return cpu_ms() - start;
 }
 
 double unpack_tinygltf(const Bytes &file)
 {
-    tinygltf::TinyGLTF loader;
     tinygltf::Model model;
-    std::string error, warning;
     const double start = cpu_ms();
-    expect(loader.LoadBinaryFromMemory(&model, &error, &warning, file.data(),
-                                       static_cast<unsigned>(file.size())),
-           "tinygltf fails");
+    load(file, &model);
     const tinygltf::Primitive &p = model.meshes.at(0).primitives.at(0);
     const bool wide =
         model.accessors.at(static_cast<std::size_t>(p.indices)).componentType ==
