@@ -198,7 +198,8 @@ check-symbols: $(libs)
 
 ## check-cross: the same results on other compilers and machines (tests/cross)
 check-cross: cross-deps
-	@tests/cross/all.sh build/cross
+	+@$(submake) $(corrupt)
+	@CORRUPT=$(corrupt) tests/cross/all.sh build/cross
 
 ## check-web: the npm package in node, the viewer in a browser (tests/web)
 check-web: web-deps
