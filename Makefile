@@ -241,6 +241,13 @@ fuzz msan: fuzz-deps
 	+@$(submake) config=$@ CC=clang CXX=clang++ build/$@/fuzz/$(fuzz_target)
 	@PMESH=$(B)/pmesh tests/fuzz/fuzz.sh build/$@/fuzz/$(fuzz_target) \
 	  $(or $(TIME),60)
+## afl: the same by AFL++, without sanitizers and mended checksums, T=, TIME=
+afl: afl-deps
+	+@$(submake) $(B)/pmesh
+	+@$(submake) B=build/afl CC=afl-clang-fast CXX=afl-clang-fast++ \
+	  build/afl/fuzz/$(fuzz_target)
+	@PMESH=$(B)/pmesh tests/fuzz/afl.sh build/afl/fuzz/$(fuzz_target) \
+	  $(or $(TIME),60)
 fuzz_target = $(or $(T),$(error T=NAME says what to fuzz: $(targets)))
 
 ## fuzz-replay: what fuzzing found, and other odd files, to every target
@@ -306,6 +313,9 @@ web-deps:
 ## fuzz-deps: those that `make fuzz`, `msan` and `coverage` need
 fuzz-deps:
 	@tests/install-deps.sh build fuzz
+## afl-deps: those that `make afl` needs
+afl-deps:
+	@tests/install-deps.sh build afl
 ## cross-deps: those that `make check-cross` needs
 cross-deps:
 	@tests/install-deps.sh cross
@@ -361,7 +371,7 @@ help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
-.PHONY: fuzz msan fuzz-replay coverage fuzz-deps
+.PHONY: fuzz msan afl fuzz-replay coverage fuzz-deps afl-deps
 .PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps web-deps
 .PHONY: check-web check-damage check-faults install
 .PHONY: uninstall clean help FORCE
