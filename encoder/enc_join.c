@@ -341,8 +341,7 @@ static void remove_pair(enc_surface *s, const uint32_t edge[2])
     *at = s->fan[*at];
     s->degree[wing] -= 2;
     for (int i = 0; i < 2; i++)
-        for (uint32_t k = 0; k < 3; k++)
-            s->vertex[edge[i] / 3 * 3 + k] = ENC_NONE;
+        enc_surface_bury_face(s, edge[i] / 3);
     s->face_count -= 2;
 }
 

@@ -78,7 +78,7 @@ pmesh_status enc_reach_create(const enc_mesh *mesh, bool later, enc_reach *out)
         return PMESH_E_MEMORY;
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        out->beside[v] = v;
+        out->beside[v] = ENC_ALONE | v;
     return PMESH_OK;
 }
 
@@ -102,7 +102,7 @@ typedef struct search {
     const enc_surface *surface;
     double x[3], enough;
     double least, before; /* squares: the least so far, and the one before */
-    uint32_t face;        /* that is so close */
+    uint32_t edge;        /* of the face that is so close */
 } search;
 
 static void to_doubles(const int32_t p[3], double out[3])
@@ -121,7 +121,7 @@ static double from_face(const enc_surface *s, uint32_t face, const double x[3])
 }
 
 /* Looks for a face around v that is closer, until one is close enough; true if
- * there is one. */
+ * there is one, whose half-edge that leaves v is `edge` then. */
 static bool look_around(search *look, uint32_t v)
 {
     const enc_surface *s = look->surface;
@@ -134,45 +134,49 @@ static bool look_around(search *look, uint32_t v)
         if (square < look->least) {
             look->before = look->least;
             look->least = square;
-            look->face = h / 3;
+            look->edge = h;
             found = true;
         }
     }
     return found;
 }
 
-/* From the faces around v to closer ones around their corners, and so on.
- * Returns a corner of the last one. */
-static uint32_t look_for(search *look, uint32_t v)
+/* From the faces around v to closer ones around their corners, and so on. */
+static void look_for(search *look, uint32_t v)
 {
     bool closer = look_around(look, v);
 
     while (closer && look->least > look->enough) {
-        const uint32_t *corner = &look->surface->vertex[3 * look->face];
-        const uint32_t from = v, last = look->face;
+        const uint32_t last = look->edge, first = last - last % 3;
+        const uint32_t from = look->surface->vertex[last];
         closer = false;
-        for (int k = 0; k < 3 && look->face == last; k++)
-            if (corner[k] != from && look_around(look, corner[k])) {
-                v = corner[k];
-                closer = true;
-            }
+        for (uint32_t h = first; h < first + 3 && look->edge == last; h++) {
+            const uint32_t corner = look->surface->vertex[h];
+            closer = corner != from && look_around(look, corner);
+        }
     }
-    return v;
 }
 
-/* From the vertex that is beside it; where it is then is returned. */
+/* From what is beside it; what is so then is returned. As long as a face around
+ * a vertex is close enough, it does not matter which. */
 static uint32_t look_from(const enc_reach *r, uint32_t vertex, search *look)
 {
-    const uint32_t v = r->beside[vertex];
+    const uint32_t h = r->beside[vertex];
 
     *look = (search){ .surface = r->from, .enough = r->most,
                       .least = INFINITY, .before = INFINITY };
-    if (r->from->first[v] == ENC_NONE) {
+    if (h & ENC_ALONE) {
         look->least = 0;
-        return v;
+        return h;
     }
     to_doubles(r->mesh->position[vertex], look->x);
-    return look_for(look, v);
+    const double square = from_face(r->from, h / 3, look->x);
+    if (square <= look->enough) {
+        look->least = square;
+        return h;
+    }
+    look_for(look, r->from->vertex[h]);
+    return look->edge;
 }
 
 static void reach_from(enc_reach *r, uint32_t vertex)
@@ -209,18 +213,26 @@ typedef struct descent {
     const enc_schedule *made;
 } descent;
 
-/* From what was beside a vertex to what this has become. */
+/* From what was beside a vertex to what this has become; a half-edge that is
+ * alive leaves that already. */
 static void descend_block(void *user, uint32_t part, unsigned worker)
 {
     const descent *d = user;
     const enc_schedule *made = d->made;
+    const enc_surface *s = d->reach->from;
     uint32_t *beside = d->reach->beside;
     const uint32_t end = enc_block_end(d->reach->mesh, part);
 
     (void)worker;
-    for (uint32_t v = part * ENC_BLOCK; v < end; v++)
-        while (made->vertex_end[beside[v]] != ENC_NONE)
-            beside[v] = made->contraction[made->vertex_end[beside[v]]].parent;
+    for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
+        const uint32_t h = beside[v];
+        if (!(h & ENC_ALONE) && s->vertex[h] != ENC_NONE)
+            continue;
+        uint32_t at = h & ENC_ALONE ? h & ~ENC_ALONE : s->twin[h];
+        while (made->vertex_end[at] != ENC_NONE)
+            at = made->contraction[made->vertex_end[at]].parent;
+        beside[v] = s->first[at] != ENC_NONE ? s->first[at] : ENC_ALONE | at;
+    }
 }
 
 static enc_pool *pool_of(const enc_reach *r)

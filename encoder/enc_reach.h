@@ -10,7 +10,8 @@
  * nearest face is not to be reached that way.
  *
  * A vertex need not look on once it is closer than another one, or than the
- * bound of the level before: bounds shall not fall. So most look at few faces.
+ * bound of the level before: bounds shall not fall. So it is kept with the face
+ * that was close enough, which mostly is so again: most look at one face.
  *
  * In a joined mesh, vertices of pieces that have vanished do not count.
  *
@@ -25,6 +26,10 @@
 #include "encoder/enc_schedule.h"
 #include "encoder/enc_surface.h"
 
+/* Instead of a half-edge: this and the number of a vertex that has none, or
+ * not yet. Half-edges are fewer than 2^31. */
+#define ENC_ALONE UINT32_C(0x80000000)
+
 typedef struct enc_guess {
     uint32_t beside;
     float below; /* the guess is right as long as the bound is below this */
@@ -32,7 +37,8 @@ typedef struct enc_guess {
 
 typedef struct enc_reach {
     const enc_mesh *mesh;
-    uint32_t *beside; /* per vertex of the full mesh: one of the level */
+    uint32_t *beside; /* per vertex of the full mesh: a half-edge that leaves
+                         one of the level; see ENC_ALONE */
     enc_guess *guess; /* per vertex; NULL without helpers */
     bool later;       /* enc_reach_begin() may be called */
     enc_surface copy; /* then: of the surface */

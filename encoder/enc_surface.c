@@ -249,6 +249,14 @@ static void restart(enc_surface *s, uint32_t wing, uint32_t old, uint32_t now)
     *at = s->fan && now == ENC_NONE ? s->fan[old] : now;
 }
 
+void enc_surface_bury_face(enc_surface *s, uint32_t face)
+{
+    for (uint32_t h = 3 * face; h < 3 * face + 3; h++) {
+        s->twin[h] = s->vertex[h];
+        s->vertex[h] = ENC_NONE;
+    }
+}
+
 void enc_surface_remove_face(enc_surface *s, uint32_t h)
 {
     const uint32_t next = enc_next(h), prev = enc_prev(h);
@@ -261,7 +269,7 @@ void enc_surface_remove_face(enc_surface *s, uint32_t h)
         s->twin[out] = in;
     restart(s, wing, prev, in);
     s->degree[wing] -= in == ENC_NONE && out == ENC_NONE ? 3 : 1;
-    s->vertex[h] = s->vertex[next] = s->vertex[prev] = ENC_NONE;
+    enc_surface_bury_face(s, h / 3);
     s->face_count--;
 }
 

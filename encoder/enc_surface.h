@@ -22,7 +22,7 @@
 typedef struct enc_surface {
     const enc_mesh *mesh;
     uint32_t *vertex; /* per half-edge: its start; ENC_NONE in dead faces */
-    uint32_t *twin;   /* per half-edge */
+    uint32_t *twin;   /* per half-edge; in dead faces: its last start */
     uint32_t *wedge;  /* per corner, NULL without attributes */
     uint32_t *first;  /* per vertex: a half-edge that leaves it, at a boundary
                          the one without twin; ENC_NONE if it is dead */
@@ -138,6 +138,9 @@ bool enc_surface_can_join(const enc_surface *s, uint32_t h);
  * or has 4. */
 uint32_t enc_surface_fan_faces(const enc_surface *s, uint32_t corner,
                                bool *open);
+
+/* Marks a face as dead. */
+void enc_surface_bury_face(enc_surface *s, uint32_t face);
 
 /* Removes the face of h, gluing its two other sides together; the wing loses
  * its fan there if that was the only face of it. */
