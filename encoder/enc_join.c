@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "encoder/enc_bits.h"
 #include "encoder/enc_schedule.h"
 #include "format/layout.h"
 
@@ -361,6 +362,7 @@ void enc_join_contract(enc_surface *s, uint32_t child, uint32_t parent,
         if (s->wedge && s->vertex[h] == child)
             s->wedge[h] = wedge_parent[s->wedge[h]];
         s->vertex[h] = parent;
+        enc_bit_put(s->changed, h / 3);
     }
     if (link->pair != ENC_NONE)
         remove_pair(s, link->edge + link->pair);

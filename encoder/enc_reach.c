@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "encoder/enc_bits.h"
 #include "encoder/enc_distance.h"
 #include "format/alloc.h"
 
@@ -24,10 +25,12 @@ static bool create_copy(const enc_mesh *mesh, enc_surface *copy)
     copy->twin = pmesh_alloc(a, corners, sizeof *copy->twin);
     copy->first = pmesh_alloc(a, n, sizeof *copy->first);
     copy->position = pmesh_alloc(a, n, sizeof *copy->position);
+    copy->changed = pmesh_alloc(a, enc_bit_words(mesh->face_count),
+                                sizeof *copy->changed);
     if (mesh->joined)
         copy->fan = pmesh_alloc(a, corners, sizeof *copy->fan);
     return copy->vertex && copy->twin && copy->first && copy->position &&
-           (copy->fan || !mesh->joined);
+           copy->changed && (copy->fan || !mesh->joined);
 }
 
 static void copy_block(void *user, uint32_t part, unsigned worker)
@@ -78,7 +81,7 @@ pmesh_status enc_reach_create(const enc_mesh *mesh, bool later, enc_reach *out)
         return PMESH_E_MEMORY;
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        out->beside[v] = ENC_ALONE | v;
+        out->beside[v] = ENC_AT_VERTEX | v;
     return PMESH_OK;
 }
 
@@ -161,21 +164,22 @@ static void look_for(search *look, uint32_t v)
  * a vertex is close enough, it does not matter which. */
 static uint32_t look_from(const enc_reach *r, uint32_t vertex, search *look)
 {
-    const uint32_t h = r->beside[vertex];
+    const enc_surface *s = r->from;
+    uint32_t h = r->beside[vertex];
 
-    *look = (search){ .surface = r->from, .enough = r->most,
-                      .least = INFINITY, .before = INFINITY };
-    if (h & ENC_ALONE) {
-        look->least = 0;
+    *look = (search){ .surface = s, .enough = r->most, .before = INFINITY };
+    if (h & ENC_AT_VERTEX)
+        h = s->first[h & ~ENC_AT_VERTEX];
+    else if (!enc_bit_get(s->changed, h / 3))
         return h;
-    }
+    if (h == ENC_NONE)
+        return r->beside[vertex];
     to_doubles(r->mesh->position[vertex], look->x);
-    const double square = from_face(r->from, h / 3, look->x);
-    if (square <= look->enough) {
-        look->least = square;
+    look->least = from_face(s, h / 3, look->x);
+    if (look->least <= look->enough)
         return h;
-    }
-    look_for(look, r->from->vertex[h]);
+    look->least = INFINITY;
+    look_for(look, s->vertex[h]);
     return look->edge;
 }
 
@@ -225,13 +229,13 @@ static void descend_block(void *user, uint32_t part, unsigned worker)
 
     (void)worker;
     for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
-        const uint32_t h = beside[v];
-        if (!(h & ENC_ALONE) && s->vertex[h] != ENC_NONE)
+        const uint32_t h = beside[v], named = h & ENC_AT_VERTEX;
+        if (!named && s->vertex[h] != ENC_NONE)
             continue;
-        uint32_t at = h & ENC_ALONE ? h & ~ENC_ALONE : s->twin[h];
+        uint32_t at = named ? h - named : s->twin[h];
         while (made->vertex_end[at] != ENC_NONE)
             at = made->contraction[made->vertex_end[at]].parent;
-        beside[v] = s->first[at] != ENC_NONE ? s->first[at] : ENC_ALONE | at;
+        beside[v] = ENC_AT_VERTEX | at;
     }
 }
 
@@ -248,6 +252,11 @@ static void start(enc_reach *r, const enc_surface *s, const enc_schedule *made)
     enc_pool_run(pool_of(r), enc_blocks(r->mesh), descend_block, &d);
     for (uint32_t v = 0; v < r->mesh->vertex_count; v += PIONEERS)
         reach_from(r, v);
+}
+
+static size_t changed_size(const enc_reach *r)
+{
+    return enc_bit_words(r->mesh->face_count) * sizeof *r->from->changed;
 }
 
 static double settle(enc_reach *r)
@@ -267,7 +276,9 @@ double enc_reach_bound(enc_reach *r, const enc_surface *s,
     start(r, s, made);
     if (r->guess)
         enc_pool_run(pool_of(r), enc_blocks(r->mesh), guess_block, r);
-    return settle(r);
+    const double bound = settle(r);
+    memset(s->changed, 0, changed_size(r));
+    return bound;
 }
 
 void enc_reach_begin(enc_reach *r, const enc_surface *s,
@@ -275,6 +286,8 @@ void enc_reach_begin(enc_reach *r, const enc_surface *s,
 {
     start(r, s, made);
     enc_pool_run(pool_of(r), copy_parts(r->mesh), copy_block, r);
+    memcpy(r->copy.changed, s->changed, changed_size(r));
+    memset(s->changed, 0, changed_size(r));
     r->from = &r->copy;
     enc_pool_begin(pool_of(r), enc_blocks(r->mesh), guess_block, r);
 }

@@ -11,7 +11,8 @@
  *
  * A vertex need not look on once it is closer than another one, or than the
  * bound of the level before: bounds shall not fall. So it is kept with the face
- * that was close enough, which mostly is so again: most look at one face.
+ * that was close enough, which still is if it has not changed, and mostly is if
+ * it has: few look at more than one face.
  *
  * In a joined mesh, vertices of pieces that have vanished do not count.
  *
@@ -26,9 +27,9 @@
 #include "encoder/enc_schedule.h"
 #include "encoder/enc_surface.h"
 
-/* Instead of a half-edge: this and the number of a vertex that has none, or
- * not yet. Half-edges are fewer than 2^31. */
-#define ENC_ALONE UINT32_C(0x80000000)
+/* Instead of a half-edge: this and the number of a vertex, no face of which is
+ * known to be close enough, or which has none. Half-edges are fewer than 2^31. */
+#define ENC_AT_VERTEX UINT32_C(0x80000000)
 
 typedef struct enc_guess {
     uint32_t beside;
@@ -38,7 +39,7 @@ typedef struct enc_guess {
 typedef struct enc_reach {
     const enc_mesh *mesh;
     uint32_t *beside; /* per vertex of the full mesh: a half-edge that leaves
-                         one of the level; see ENC_ALONE */
+                         one of the level, or ENC_AT_VERTEX */
     enc_guess *guess; /* per vertex; NULL without helpers */
     bool later;       /* enc_reach_begin() may be called */
     enc_surface copy; /* then: of the surface */

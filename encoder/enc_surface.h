@@ -30,6 +30,8 @@ typedef struct enc_surface {
                          the vertex starts, or ENC_NONE; NULL unless joined */
     uint32_t *degree; /* per vertex: members of its rings, ghosts included */
     int32_t (*position)[3];
+    uint32_t *changed; /* bit per face: a corner of it has moved or become
+                          another vertex; enc_reach.h clears them */
     uint32_t vertex_count, face_count; /* alive */
     uint32_t *mark; /* per vertex: scratch of enc_surface_mark_ring() */
     uint32_t stamp;
@@ -150,6 +152,9 @@ void enc_surface_remove_face(enc_surface *s, uint32_t h);
  * ends moved to `place`. Faces that have no area already are free. */
 bool enc_surface_flips(const enc_surface *s, const enc_pair *pair,
                        const int32_t place[3]);
+
+/* Notes that the faces around v have changed. */
+void enc_surface_change_star(enc_surface *s, uint32_t v);
 
 /*
  * Contracts the pair, which must be one that can be joined; the parent moves
