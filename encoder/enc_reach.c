@@ -12,6 +12,10 @@
 /* One of so many vertices goes first, so that the others soon have enough. */
 enum { PIONEERS = 61 };
 
+/* Beside a half-edge that was inherited: nobody looked at its face yet. Numbers
+ * of half-edges stay below 2^30 (ENC_MAX_CORNERS). */
+#define HEIR UINT32_C(0x40000000)
+
 /* ---- the surface that is searched ---- */
 
 /* A copy of what a search looks at: the surface goes on meanwhile. */
@@ -170,6 +174,8 @@ static uint32_t look_from(const enc_reach *r, uint32_t vertex, search *look)
     *look = (search){ .surface = s, .enough = r->most, .before = INFINITY };
     if (h & ENC_AT_VERTEX)
         h = s->first[h & ~ENC_AT_VERTEX];
+    else if (h & HEIR)
+        h -= HEIR;
     else if (!enc_bit_get(s->changed, h / 3))
         return h;
     if (h == ENC_NONE)
@@ -217,6 +223,13 @@ typedef struct descent {
     const enc_schedule *made;
 } descent;
 
+static uint32_t survivor(const enc_schedule *made, uint32_t v)
+{
+    while (made->vertex_end[v] != ENC_NONE)
+        v = made->contraction[made->vertex_end[v]].parent;
+    return v;
+}
+
 /* From what was beside a vertex to what this has become; a half-edge that is
  * alive leaves that already. */
 static void descend_block(void *user, uint32_t part, unsigned worker)
@@ -229,13 +242,14 @@ static void descend_block(void *user, uint32_t part, unsigned worker)
 
     (void)worker;
     for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
-        const uint32_t h = beside[v], named = h & ENC_AT_VERTEX;
-        if (!named && s->vertex[h] != ENC_NONE)
-            continue;
-        uint32_t at = named ? h - named : s->twin[h];
-        while (made->vertex_end[at] != ENC_NONE)
-            at = made->contraction[made->vertex_end[at]].parent;
-        beside[v] = ENC_AT_VERTEX | at;
+        uint32_t h = beside[v];
+        while (!(h & ENC_AT_VERTEX) && s->vertex[h] == ENC_NONE)
+            h = s->twin[h];
+        if (h & ENC_AT_VERTEX)
+            h = ENC_AT_VERTEX | survivor(made, h & ~ENC_AT_VERTEX);
+        else if (h != beside[v])
+            h |= HEIR;
+        beside[v] = h;
     }
 }
 

@@ -27,10 +27,6 @@
 #include "encoder/enc_schedule.h"
 #include "encoder/enc_surface.h"
 
-/* Instead of a half-edge: this and the number of a vertex, no face of which is
- * known to be close enough, or which has none. Half-edges are fewer than 2^31. */
-#define ENC_AT_VERTEX UINT32_C(0x80000000)
-
 typedef struct enc_guess {
     uint32_t beside;
     float below; /* the guess is right as long as the bound is below this */
@@ -39,7 +35,7 @@ typedef struct enc_guess {
 typedef struct enc_reach {
     const enc_mesh *mesh;
     uint32_t *beside; /* per vertex of the full mesh: a half-edge that leaves
-                         one of the level, or ENC_AT_VERTEX */
+                         one of the level, or ENC_AT_VERTEX and that one */
     enc_guess *guess; /* per vertex; NULL without helpers */
     bool later;       /* enc_reach_begin() may be called */
     enc_surface copy; /* then: of the surface */

@@ -255,12 +255,17 @@ static void restart(enc_surface *s, uint32_t wing, uint32_t old, uint32_t now)
     *at = s->fan && now == ENC_NONE ? s->fan[old] : now;
 }
 
+/* h is dead; `heir`, in a face beside it, has the same start. */
+static void bury(enc_surface *s, uint32_t h, uint32_t heir)
+{
+    s->twin[h] = heir != ENC_NONE ? heir : ENC_AT_VERTEX | s->vertex[h];
+    s->vertex[h] = ENC_NONE;
+}
+
 void enc_surface_bury_face(enc_surface *s, uint32_t face)
 {
-    for (uint32_t h = 3 * face; h < 3 * face + 3; h++) {
-        s->twin[h] = s->vertex[h];
-        s->vertex[h] = ENC_NONE;
-    }
+    for (uint32_t h = 3 * face; h < 3 * face + 3; h++)
+        bury(s, h, ENC_NONE);
 }
 
 void enc_surface_remove_face(enc_surface *s, uint32_t h)
@@ -275,7 +280,9 @@ void enc_surface_remove_face(enc_surface *s, uint32_t h)
         s->twin[out] = in;
     restart(s, wing, prev, in);
     s->degree[wing] -= in == ENC_NONE && out == ENC_NONE ? 3 : 1;
-    enc_surface_bury_face(s, h / 3);
+    bury(s, h, out);
+    bury(s, next, out);
+    bury(s, prev, in);
     s->face_count--;
 }
 

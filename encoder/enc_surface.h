@@ -19,10 +19,15 @@
 
 #include "encoder/enc_mesh.h"
 
+/* Instead of a half-edge: this and the number of a vertex. Half-edges are fewer
+ * than 2^31. */
+#define ENC_AT_VERTEX UINT32_C(0x80000000)
+
 typedef struct enc_surface {
     const enc_mesh *mesh;
     uint32_t *vertex; /* per half-edge: its start; ENC_NONE in dead faces */
-    uint32_t *twin;   /* per half-edge; in dead faces: its last start */
+    uint32_t *twin;   /* per half-edge; in dead faces its heir, one with the same
+                         start, or ENC_AT_VERTEX and that vertex */
     uint32_t *wedge;  /* per corner, NULL without attributes */
     uint32_t *first;  /* per vertex: a half-edge that leaves it, at a boundary
                          the one without twin; ENC_NONE if it is dead */
@@ -141,7 +146,7 @@ bool enc_surface_can_join(const enc_surface *s, uint32_t h);
 uint32_t enc_surface_fan_faces(const enc_surface *s, uint32_t corner,
                                bool *open);
 
-/* Marks a face as dead. */
+/* Marks a face as dead, without heirs. */
 void enc_surface_bury_face(enc_surface *s, uint32_t face);
 
 /* Removes the face of h, gluing its two other sides together; the wing loses
