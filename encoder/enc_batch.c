@@ -388,6 +388,8 @@ static uint32_t contract_pairs(enc_run *run, const enc_batch_plan *plan)
 uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
 {
     run->too_far = false;
+    run->pricing.sign = enc_queue_scratch(
+        &run->queue, run->mesh->vertex_count * sizeof(enc_sign));
     enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
                       run->out->contraction_count == 0);
     enc_collect(run, plan->guard);

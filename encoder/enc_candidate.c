@@ -139,14 +139,15 @@ static void survey_block(enc_pricing *p, const enc_surface *s, uint32_t part)
     enc_block sums = { .length = 0 };
 
     for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
-        uint32_t start = s->first[v];
-        double length;
-        if (start == ENC_NONE)
+        enc_survey survey;
+        if (s->first[v] == ENC_NONE)
             continue;
-        for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
-            sums.edges += h < s->twin[h];
-        p->unevenness[v] = (float)enc_star_unevenness(s, v, &length);
-        sums.length += length;
+        enc_star_survey(s, v, &survey);
+        p->unevenness[v] = (float)survey.unevenness;
+        if (p->sign)
+            p->sign[v] = survey.sign;
+        sums.length += survey.length;
+        sums.edges += survey.edges;
     }
     p->block[part] = sums;
 }
@@ -280,8 +281,11 @@ static bool parent_moves(const enc_pricing *p, const enc_surface *s,
 static double regularity(const enc_pricing *p, const enc_pair *pair,
                          double edge_square)
 {
-    return p->edge_square * (p->taste.length * edge_square +
-                             p->taste.uneven * p->unevenness[pair->child]);
+    double sum = p->taste.length * edge_square;
+
+    if (p->taste.uneven > 0)
+        sum += p->taste.uneven * p->unevenness[pair->child];
+    return p->edge_square * sum;
 }
 
 /* Of what is no quadric, which has its factors already. */
@@ -360,35 +364,46 @@ static void sum_both(const enc_pricing *p, const enc_surface *s,
     sum_about_midpoint(&ends[0], &ends[1], half, sum);
 }
 
-/* A parent that stays, by quadrics alone: what most pairs are. */
-static enc_offer estimate_plain(const enc_pricing *p, const enc_surface *s,
-                                const enc_pair *pair)
+/* Q(x) of a vertex, where x is seen from it. */
+static double stored_value(const enc_pricing *p, uint32_t v, const double x[3])
 {
-    const enc_quadric child = recall(p, pair->child);
+    const enc_quadric q = recall(p, v);
+    return enc_quadric_value(&q, x);
+}
+
+/* Quadrics alone are asked for. */
+static bool is_plain(const enc_pricing *p)
+{
+    return p->looks.count == 0 && p->rule.cost == PMESH_COST_QUADRIC;
+}
+
+/* A parent that stays, by quadrics alone: what most pairs are; `edge` leads from
+ * the parent to the child. */
+static enc_offer estimate_plain(const enc_pricing *p, const enc_pair *pair,
+                                const double edge[3])
+{
+    const double back[3] = { -edge[0], -edge[1], -edge[2] };
     const double rest = p->moved ? p->moved[pair->parent].c : 0;
-    double back[3];
     enc_offer offer = { .cost = 0 };
 
-    difference(s->position[pair->parent], s->position[pair->child], back);
     offer.quadric = factor_of(p, pair->child) *
-                        enc_quadric_value(&child, back) +
+                        stored_value(p, pair->child, back) +
                     factor_of(p, pair->parent) * rest;
-    offer.cost = plain_cost(p, pair, dot(back, back), offer.quadric);
+    offer.cost = plain_cost(p, pair, dot(edge, edge), offer.quadric);
     return offer;
 }
 
 enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
                                const enc_pair *pair)
 {
-    if (p->placement == PMESH_SUBSET && p->looks.count == 0 &&
-        p->rule.cost == PMESH_COST_QUADRIC)
-        return estimate_plain(p, s, pair);
-    enc_quadric ends[2] = { recall(p, pair->child), recall(p, pair->parent) };
-    const double weight = ends[0].weight + ends[1].weight;
     double edge[3], half[3], middle[3], x[3];
-    enc_offer offer = { .cost = 0 };
 
     difference(s->position[pair->child], s->position[pair->parent], edge);
+    if (is_plain(p) && p->placement == PMESH_SUBSET)
+        return estimate_plain(p, pair, edge);
+    enc_quadric ends[2] = { recall(p, pair->child), recall(p, pair->parent) };
+    const double weight = ends[0].weight + ends[1].weight;
+    enc_offer offer = { .cost = 0 };
     for (int i = 0; i < 3; i++) {
         half[i] = edge[i] / 2;
         middle[i] = s->position[pair->parent][i] + half[i];
@@ -414,6 +429,87 @@ enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
     offer.distance = weight > 0 ? offer.distance / weight : 0;
     offer.cost = cost_of(p, s, pair, middle, half, x, &offer);
     return offer;
+}
+
+/* One end's share of the sum about the midpoint, which lies at `back`. */
+typedef struct share {
+    double b[3], c[4]; /* the terms of c in their order: sums round */
+} share;
+
+static share share_of(const enc_quadric *q, const double back[3])
+{
+    share out;
+
+    enc_quadric_slope(q, back, out.b);
+    for (int i = 0; i < 3; i++)
+        out.c[i] = back[i] * (out.b[i] + q->b[i]);
+    out.c[3] = q->c;
+    return out;
+}
+
+/* As enc_quadric_add() sums them up, one end after the other. */
+static double sum_rests(const share *first, const share *second)
+{
+    double c = 0;
+
+    for (int i = 0; i < 4; i++)
+        c += first->c[i];
+    for (int i = 0; i < 4; i++)
+        c += second->c[i];
+    return c;
+}
+
+/* Both directions of a pair whose parent moves, without constraints: they have
+ * one place and, but for rounding, one cost. */
+static void estimate_moving(const enc_pricing *p, const enc_pair ways[2],
+                            const double edge[3], enc_offer out[2])
+{
+    const double half[2][3] = {
+        { edge[0] / 2, edge[1] / 2, edge[2] / 2 },
+        { -edge[0] / 2, -edge[1] / 2, -edge[2] / 2 }
+    };
+    const enc_quadric child = recall(p, ways[0].child);
+    const enc_quadric parent = recall(p, ways[0].parent);
+    const share a = share_of(&child, half[1]), b = share_of(&parent, half[0]);
+    enc_quadric sum = { .weight = child.weight + parent.weight };
+    double x[3];
+
+    for (int i = 0; i < 6; i++)
+        sum.a[i] = child.a[i] + parent.a[i];
+    for (int i = 0; i < 3; i++)
+        sum.b[i] = a.b[i] + b.b[i];
+    const bool found =
+        enc_quadric_minimum(&sum, NULL, x) && within_reach(x, half[0]);
+    for (int k = 0; k < 2; k++) {
+        sum.c = k == 0 ? sum_rests(&a, &b) : sum_rests(&b, &a);
+        if (!found)
+            best_of_three(&sum, half[k], x);
+        out[k].quadric = enc_quadric_value(&sum, x);
+        out[k].cost = plain_cost(p, &ways[k], 4 * dot(half[k], half[k]),
+                                 out[k].quadric);
+    }
+}
+
+void enc_pricing_estimate_both(const enc_pricing *p, const enc_surface *s,
+                               const enc_pair ways[2], enc_offer out[2])
+{
+    double edge[3];
+
+    if (is_plain(p) && p->placement == PMESH_SUBSET) {
+        difference(s->position[ways[0].child], s->position[ways[0].parent],
+                   edge);
+        const double back[3] = { -edge[0], -edge[1], -edge[2] };
+        out[0] = estimate_plain(p, &ways[0], edge);
+        out[1] = estimate_plain(p, &ways[1], back);
+    } else if (is_plain(p) && !p->factor && !p->pull && !p->lock &&
+               parent_moves(p, s, &ways[0])) {
+        difference(s->position[ways[0].child], s->position[ways[0].parent],
+                   edge);
+        estimate_moving(p, ways, edge, out);
+    } else {
+        out[0] = enc_pricing_estimate(p, s, &ways[0]);
+        out[1] = enc_pricing_estimate(p, s, &ways[1]);
+    }
 }
 
 /* Where the parent should go, relative to the midpoint. A constraint is worth

@@ -50,6 +50,8 @@ typedef struct enc_pricing {
     double edge_square; /* e^2 */
     enc_planes *planes; /* per vertex: its quadric, about its position ... */
     enc_moved *moved;   /* ... NULL with PMESH_MEMORYLESS */
+    enc_sign *sign;     /* per vertex: where enc_pricing_begin() shall leave the
+                           signature of its rings; or NULL */
     float *unevenness;  /* per vertex: |v - mean of its ring|^2 */
     enc_block *block;   /* per enc_blocks() */
     float *factor;      /* per vertex, as in enc_guide; or NULL */
@@ -84,6 +86,10 @@ void enc_pricing_begin(enc_pricing *pricing, const enc_surface *s,
  * with the same child may be expected by the looks. */
 enc_offer enc_pricing_estimate(const enc_pricing *pricing, const enc_surface *s,
                                const enc_pair *pair);
+
+/* The same of both directions of a pair. */
+void enc_pricing_estimate_both(const enc_pricing *pricing, const enc_surface *s,
+                               const enc_pair ways[2], enc_offer out[2]);
 
 /* From the surface as it is now; the final word. The pair must be expected by
  * the looks. */

@@ -46,38 +46,61 @@ enc_pair enc_run_pair(const enc_run *run, uint32_t h, bool back)
     return pair;
 }
 
+static enc_entry entry_of(uint8_t state, uint32_t h, bool back,
+                          const enc_offer *offer)
+{
+    const uint32_t last = unclean(state, back) ? ENC_KEY_LAST : 0;
+    const uint32_t key = offer->cost < INFINITY ? last | enc_key(offer->cost)
+                                                : UINT32_MAX;
+    return (enc_entry){ key, enc_entry_id(h, back) };
+}
+
 enc_entry enc_run_entry(const enc_run *run, uint32_t h, bool back,
                         double *quadric)
 {
-    const enc_surface *s = &run->surface;
     const enc_pair pair = enc_run_pair(run, h, back);
-    const uint32_t last = unclean(run->edge_state[h], back) ? ENC_KEY_LAST : 0;
-    const enc_offer offer = enc_pricing_estimate(&run->pricing, s, &pair);
+    const enc_offer offer =
+        enc_pricing_estimate(&run->pricing, &run->surface, &pair);
 
     *quadric = offer.quadric;
-    if (!(offer.cost < INFINITY))
-        return (enc_entry){ UINT32_MAX, enc_entry_id(h, back) };
-    return (enc_entry){ last | enc_key(offer.cost), enc_entry_id(h, back) };
+    return entry_of(run->edge_state[h], h, back, &offer);
 }
 
-/* What the edge of h may do; the ring of its start is marked. */
-static uint8_t examine_edge(const enc_surface *s, uint32_t h)
+/* A vertex with several fans is not what signatures are for. */
+static bool is_signed(const enc_run *run)
 {
-    if (!enc_surface_can_join(s, h))
+    return run->pricing.sign && !run->surface.fan;
+}
+
+/* The rings are signed, or that of the start of h is marked. */
+static bool can_join(enc_run *run, uint32_t h)
+{
+    enc_surface *s = &run->surface;
+    return is_signed(run)
+               ? enc_surface_can_join_signed(s, run->pricing.sign, h)
+               : enc_surface_can_join(s, h);
+}
+
+/* What the edge of h may do, see above. */
+static uint8_t examine_edge(enc_run *run, uint32_t h)
+{
+    const enc_surface *s = &run->surface;
+    if (!can_join(run, h))
         return 0;
-    const enc_pair forth = enc_surface_pair(s, h, false);
-    const enc_pair back = enc_surface_pair(s, h, true);
-    const bool start_outer = enc_on_boundary(s, forth.child);
-    const bool end_outer = enc_on_boundary(s, forth.parent);
-    unsigned state = 0;
+    const bool start_outer = enc_on_boundary(s, s->vertex[h]);
+    const bool end_outer = enc_on_boundary(s, s->vertex[enc_next(h)]);
 
     /* The boundary keeps its vertices unless contracted along itself. */
-    if (!start_outer || end_outer)
-        state |=
-            enc_wedges_clean(s, &forth) ? MAY_FORTH : MAY_FORTH | UNCLEAN_FORTH;
-    if (!end_outer || start_outer)
-        state |=
-            enc_wedges_clean(s, &back) ? MAY_BACK : MAY_BACK | UNCLEAN_BACK;
+    unsigned state = (!start_outer || end_outer ? MAY_FORTH : 0) |
+                     (!end_outer || start_outer ? MAY_BACK : 0);
+    if (s->wedge) {
+        const enc_pair forth = enc_surface_pair(s, h, false);
+        const enc_pair back = enc_surface_pair(s, h, true);
+        if ((state & MAY_FORTH) && !enc_wedges_clean(s, &forth))
+            state |= UNCLEAN_FORTH;
+        if ((state & MAY_BACK) && !enc_wedges_clean(s, &back))
+            state |= UNCLEAN_BACK;
+    }
     return (uint8_t)state;
 }
 
@@ -140,24 +163,26 @@ static uint8_t guided_state(const enc_run *run, uint32_t h, uint8_t state)
 static void queue_pair(enc_run *run, uint32_t h, uint8_t state)
 {
     enc_entry best = { UINT32_MAX, 0 };
-    double best_quadric = 0;
+    double quadric = 0;
 
     if (run->mesh->guide && state)
         state = guided_state(run, h, state);
     run->edge_state[h] = state;
-    for (int back = 0; back < 2; back++) {
-        if (!may(state, back != 0))
-            continue;
-        double quadric;
-        const enc_entry entry = enc_run_entry(run, h, back, &quadric);
-        if (entry.key < best.key) {
-            best = entry;
-            best_quadric = quadric;
-        }
+    if (may(state, false) && may(state, true)) {
+        const enc_pair ways[2] = { enc_run_pair(run, h, false),
+                                   enc_run_pair(run, h, true) };
+        enc_offer offer[2];
+        enc_pricing_estimate_both(&run->pricing, &run->surface, ways, offer);
+        const enc_entry forth = entry_of(state, h, false, &offer[0]);
+        const enc_entry back = entry_of(state, h, true, &offer[1]);
+        best = back.key < forth.key ? back : forth;
+        quadric = offer[back.key < forth.key].quadric;
+    } else if (may(state, false) || may(state, true)) {
+        best = enc_run_entry(run, h, may(state, true), &quadric);
     }
     if (best.key < UINT32_MAX) {
         enc_queue_add(&run->queue, best);
-        enc_quantile_add(&run->quadrics, best_quadric);
+        enc_quantile_add(&run->quadrics, quadric);
     }
 }
 
@@ -166,7 +191,7 @@ static void queue_edge(enc_run *run, uint32_t h)
 {
     const enc_surface *s = &run->surface;
     const bool general = s->fan && enc_join_is_general(s, h);
-    uint8_t state = general ? 0 : examine_edge(s, h);
+    uint8_t state = general ? 0 : examine_edge(run, h);
     if (s->fan && state == 0 && enc_join_is_lowest(s, h))
         state = examine_general(s, s->vertex[h], s->vertex[enc_next(h)]);
     queue_pair(run, h, state);
@@ -251,7 +276,8 @@ static void collect_block(void *user, uint32_t part, unsigned worker)
         uint32_t start = s->first[v];
         if (start == ENC_NONE)
             continue;
-        enc_surface_mark_ring(s, v);
+        if (!is_signed(run))
+            enc_surface_mark_ring(s, v);
         for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
             if (h < s->twin[h]) /* ENC_NONE is the largest */
                 queue_edge(run, h);

@@ -24,9 +24,12 @@ static inline void enc_quantile_clear(enc_quantile *q)
 
 static inline void enc_quantile_add(enc_quantile *q, double value)
 {
-    int exponent;
-    const double part = frexp(value, &exponent); /* 1/2 .. 1 */
-    const int bin = 8 * (exponent - ENC_QUANTILE_LEAST) + (int)(16 * part) - 8;
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    /* Of a positive double: the exponent and the first three bits of what
+     * stands behind the point. */
+    const int64_t bin =
+        (int64_t)(bits >> 49) - 8 * (1022 + ENC_QUANTILE_LEAST);
     q->bin[value > 0 && bin > 0
                ? (bin < ENC_QUANTILE_BINS ? bin : ENC_QUANTILE_BINS - 1)
                : 0]++;

@@ -46,6 +46,11 @@ void enc_queue_destroy(enc_queue *q)
     *q = (enc_queue){ 0 };
 }
 
+void *enc_queue_scratch(enc_queue *q, size_t size)
+{
+    return size <= q->capacity * sizeof *q->heap ? q->heap : NULL;
+}
+
 void enc_queue_clear(enc_queue *q)
 {
     q->list_count = q->list_next = q->heap_count = 0;

@@ -33,6 +33,10 @@ pmesh_status enc_queue_create(const pmesh_allocator *allocator,
                               uint32_t capacity, enc_queue *out);
 void enc_queue_destroy(enc_queue *queue);
 
+/* So many bytes that nobody else needs until the list is sorted, or NULL if
+ * that is too much. What they held is lost. */
+void *enc_queue_scratch(enc_queue *queue, size_t size);
+
 void enc_queue_clear(enc_queue *queue);
 /* At most `capacity` of these between clear and sort. */
 void enc_queue_add(enc_queue *queue, enc_entry entry);

@@ -149,41 +149,49 @@ void enc_star_all_planes(const enc_surface *s, enc_planes *planes)
     }
 }
 
-/* Sums of a fan's edges from v, and of their squares; returns their number. */
-static uint32_t sum_edges(const enc_surface *s, uint32_t start, uint32_t v,
-                          double sum[3], double *square)
+/* One neighbour of v: returns the squared length of their edge. */
+static double survey_edge(const enc_surface *s, uint32_t v, uint32_t neighbour,
+                          double sum[3], enc_survey *out)
 {
-    uint32_t h = start, last, count = 0;
     double d[3];
 
+    difference(s->position[neighbour], s->position[v], d);
+    for (int i = 0; i < 3; i++)
+        sum[i] += d[i];
+    enc_sign_add(&out->sign, neighbour);
+    return dot(d, d);
+}
+
+/* Returns the number of neighbours; their sum, as seen from v, goes to sum. */
+static uint32_t survey_fan(const enc_surface *s, uint32_t start, uint32_t v,
+                           double sum[3], enc_survey *out)
+{
+    uint32_t h = start, last, count = 0;
+
     do {
-        difference(s->position[s->vertex[enc_next(h)]], s->position[v], d);
-        for (int i = 0; i < 3; i++)
-            sum[i] += d[i];
-        *square += dot(d, d);
+        out->length += survey_edge(s, v, s->vertex[enc_next(h)], sum, out);
+        out->edges += h < s->twin[h];
         count++;
         last = enc_prev(h);
         h = s->twin[last];
     } while (h != ENC_NONE && h != start);
     if (h == ENC_NONE) {
-        difference(s->position[s->vertex[last]], s->position[v], d);
-        for (int i = 0; i < 3; i++)
-            sum[i] += d[i];
+        survey_edge(s, v, s->vertex[last], sum, out);
         count++;
     }
     return count;
 }
 
-double enc_star_unevenness(const enc_surface *s, uint32_t v, double *length)
+void enc_star_survey(const enc_surface *s, uint32_t v, enc_survey *out)
 {
     double sum[3] = { 0, 0, 0 };
     uint32_t count = 0;
 
-    *length = 0;
+    *out = (enc_survey){ .edges = 0 };
     for (uint32_t fan = s->first[v]; fan != ENC_NONE;
          fan = enc_next_fan(s, fan))
-        count += sum_edges(s, fan, v, sum, length);
-    return dot(sum, sum) / ((double)count * count);
+        count += survey_fan(s, fan, v, sum, out);
+    out->unevenness = dot(sum, sum) / ((double)count * count);
 }
 
 void enc_star_volume(const enc_surface *s, uint32_t v, uint32_t other,

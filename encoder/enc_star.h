@@ -9,6 +9,7 @@
 #define ENC_STAR_H
 
 #include "encoder/enc_quadric.h"
+#include "encoder/enc_sign.h"
 #include "encoder/enc_surface.h"
 
 /* The part of a quadric that is not zero while its vertex has not moved. */
@@ -23,9 +24,15 @@ void enc_star_quadric(const enc_surface *s, uint32_t v, enc_quadric *q);
 /* The same for all vertices at once, for a third of the work. */
 void enc_star_all_planes(const enc_surface *s, enc_planes *planes);
 
-/* Squared distance of v from the mean of its neighbours; *length gets the sum
- * of the squared lengths of the edges that leave it. */
-double enc_star_unevenness(const enc_surface *s, uint32_t v, double *length);
+/* What the rings of a vertex say. */
+typedef struct enc_survey {
+    double length;     /* sum of the squared edges that leave it */
+    double unevenness; /* its squared distance from the mean of its neighbours */
+    uint32_t edges;    /* whose lower half-edge leaves it */
+    enc_sign sign;     /* of its neighbours */
+} enc_survey;
+
+void enc_star_survey(const enc_surface *s, uint32_t v, enc_survey *out);
 
 /* Adds to the plane of constant volume the faces of v without those of
  * `other` (ENC_NONE: all); v lies at `offset`. */

@@ -179,7 +179,8 @@ static bool wing_can_spare(const enc_surface *s, uint32_t h)
     return enc_surface_fan_faces(s, corner, &open) >= (open ? 2 : 4);
 }
 
-bool enc_surface_can_join(const enc_surface *s, uint32_t h)
+/* All that is asked for but the link condition. */
+static bool rings_fit(const enc_surface *s, uint32_t h)
 {
     const uint32_t u = s->vertex[h], v = s->vertex[enc_next(h)];
     const uint32_t twin = s->twin[h];
@@ -190,19 +191,47 @@ bool enc_surface_can_join(const enc_surface *s, uint32_t h)
         return false;
     if (!wing_can_spare(s, h) || !wing_can_spare(s, twin))
         return false;
-    if (twin != ENC_NONE && enc_on_boundary(s, u) && enc_on_boundary(s, v))
-        return false;
+    return twin == ENC_NONE || !enc_on_boundary(s, u) || !enc_on_boundary(s, v);
+}
 
+/* The ring of the start of h is marked. */
+static bool have_wings_alone(const enc_surface *s, uint32_t h)
+{
+    const uint32_t start = s->first[s->vertex[enc_next(h)]];
+    const uint32_t wings = s->twin[h] == ENC_NONE ? 1 : 2;
     uint32_t common = 0, last;
-    h = s->first[v];
+
+    h = start;
     do {
         common += s->mark[s->vertex[enc_next(h)]] == s->stamp;
         last = enc_prev(h);
         h = s->twin[last];
-    } while (h != ENC_NONE && h != s->first[v]);
+    } while (h != ENC_NONE && h != start);
     if (h == ENC_NONE)
         common += s->mark[s->vertex[last]] == s->stamp;
-    return common == (twin == ENC_NONE ? 1 : 2);
+    return common == wings;
+}
+
+bool enc_surface_can_join(const enc_surface *s, uint32_t h)
+{
+    return rings_fit(s, h) && have_wings_alone(s, h);
+}
+
+bool enc_surface_can_join_signed(enc_surface *s, const enc_sign *sign,
+                                 uint32_t h)
+{
+    const uint32_t u = s->vertex[h], v = s->vertex[enc_next(h)];
+    const uint32_t twin = s->twin[h];
+
+    if (!rings_fit(s, h))
+        return false;
+    const uint32_t left = s->vertex[enc_prev(h)];
+    const uint32_t right =
+        twin == ENC_NONE ? left : s->vertex[enc_prev(twin)];
+    if (enc_sign_excludes(&sign[u], &sign[v], left, right))
+        return true;
+    enc_surface_mark_ring(s, u);
+    return have_wings_alone(s, h);
 }
 
 static double dot(const double a[3], const double b[3])

@@ -18,6 +18,7 @@
 #include <stdbool.h>
 
 #include "encoder/enc_mesh.h"
+#include "encoder/enc_sign.h"
 
 /* Instead of a half-edge: this and the number of a vertex. Half-edges are fewer
  * than 2^31. */
@@ -140,6 +141,11 @@ void enc_surface_mark_ring(enc_surface *s, uint32_t v);
  * fewer than four: the wings' rings would be too small.
  */
 bool enc_surface_can_join(const enc_surface *s, uint32_t h);
+
+/* The same if there are signatures of all rings: none needs to be marked, but
+ * one may be. Each vertex has one fan. */
+bool enc_surface_can_join_signed(enc_surface *s, const enc_sign *sign,
+                                 uint32_t h);
 
 /* Faces of the fan of a corner, 4 standing for more; *open unless it is closed
  * or has 4. */
