@@ -296,7 +296,6 @@ static bool try_entry(enc_run *run, const enc_batch_plan *plan, enc_entry entry)
         return false;
     if (general)
         return try_general(run, plan, entry, &pair);
-    enc_surface_mark_ring(s, s->vertex[h]);
     if (!enc_surface_can_join(s, h) || !simple_fits(run, &pair))
         return false;
 

@@ -46,7 +46,6 @@ typedef struct enc_role {
 
 /* What another worker than the calling thread writes to. */
 typedef struct enc_scratch {
-    uint32_t *mark; /* per vertex: see enc_surface */
     uint32_t *fate; /* per wedge: see enc_looks; NULL if that is */
 } enc_scratch;
 

@@ -72,17 +72,16 @@ static bool is_signed(const enc_run *run)
     return run->pricing.sign && !run->surface.fan;
 }
 
-/* The rings are signed, or that of the start of h is marked. */
-static bool can_join(enc_run *run, uint32_t h)
+static bool can_join(const enc_run *run, uint32_t h)
 {
-    enc_surface *s = &run->surface;
+    const enc_surface *s = &run->surface;
     return is_signed(run)
                ? enc_surface_can_join_signed(s, run->pricing.sign, h)
                : enc_surface_can_join(s, h);
 }
 
-/* What the edge of h may do, see above. */
-static uint8_t examine_edge(enc_run *run, uint32_t h)
+/* What the edge of h may do. */
+static uint8_t examine_edge(const enc_run *run, uint32_t h)
 {
     const enc_surface *s = &run->surface;
     if (!can_join(run, h))
@@ -207,10 +206,13 @@ static uint32_t survivor(const enc_run *run, uint32_t v)
 }
 
 /* True if v and w have an edge. */
-static bool are_linked(enc_surface *s, uint32_t v, uint32_t w)
+static bool are_linked(const enc_surface *s, uint32_t v, uint32_t w)
 {
-    enc_surface_mark_ring(s, v);
-    return s->mark[w] == s->stamp;
+    uint32_t start = s->first[v];
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
+        if (s->vertex[enc_next(h)] == w || s->vertex[enc_prev(h)] == w)
+            return true;
+    return false;
 }
 
 /* Those by distance are followed to where they went; those between sheets are
@@ -250,10 +252,7 @@ static void open_views(enc_run *run, unsigned workers)
     for (unsigned i = 1; i < workers; i++) {
         enc_run *view = view_of(run, i);
         const enc_scratch *own = &run->scratch[i - 1];
-        const uint32_t stamp = view->surface.stamp;
         *view = *run;
-        view->surface.mark = own->mark;
-        view->surface.stamp = stamp;
         view->pricing.looks.fate = own->fate;
     }
 }
@@ -276,8 +275,6 @@ static void collect_block(void *user, uint32_t part, unsigned worker)
         uint32_t start = s->first[v];
         if (start == ENC_NONE)
             continue;
-        if (!is_signed(run))
-            enc_surface_mark_ring(s, v);
         for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
             if (h < s->twin[h]) /* ENC_NONE is the largest */
                 queue_edge(run, h);

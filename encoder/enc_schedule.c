@@ -183,9 +183,7 @@ static bool create_scratch(const enc_mesh *mesh, enc_run *run)
         return false;
     for (unsigned i = 0; i < others; i++) {
         enc_scratch *own = &run->scratch[i];
-        own->mark = pmesh_alloc_zero(a, mesh->vertex_count, sizeof *own->mark);
-        if (!own->mark ||
-            !enc_looks_fate(&run->pricing.looks, mesh, &own->fate))
+        if (!enc_looks_fate(&run->pricing.looks, mesh, &own->fate))
             return false;
     }
     return true;
@@ -198,7 +196,6 @@ static void destroy_scratch(const enc_mesh *mesh, enc_run *run)
 
     for (unsigned i = 0; run->scratch && i < others; i++) {
         enc_scratch *own = &run->scratch[i];
-        pmesh_release(a, own->mark, mesh->vertex_count, sizeof *own->mark);
         pmesh_release(a, own->fate, mesh->wedge_count, sizeof *own->fate);
     }
     pmesh_release(a, run->scratch, others, sizeof *run->scratch);
@@ -435,7 +432,7 @@ static pmesh_simplify_end reason(const enc_run *run)
 static pmesh_status finish_wedges(enc_run *run)
 {
     const enc_schedule *out = run->out;
-    uint32_t *parent = run->surface.mark;
+    uint32_t *parent = run->surface.degree;
 
     for (uint32_t v = 0; v < run->mesh->vertex_count; v++) {
         const uint32_t end = out->vertex_end[v];

@@ -89,12 +89,11 @@ pmesh_status enc_surface_create(const enc_mesh *mesh, enc_surface *out)
     s.first = pmesh_alloc(a, n, sizeof *s.first);
     s.degree = pmesh_alloc(a, n, sizeof *s.degree);
     s.position = pmesh_alloc(a, n, sizeof *s.position);
-    s.mark = pmesh_alloc_zero(a, n, sizeof *s.mark);
     s.changed = pmesh_alloc_zero(a, enc_bit_words(mesh->face_count),
                                  sizeof *s.changed);
     *out = s;
     if (!s.vertex || !s.twin || (mesh->wedge && !s.wedge) || !s.first ||
-        !s.degree || !s.position || !s.mark || !s.changed ||
+        !s.degree || !s.position || !s.changed ||
         (mesh->joined && !s.fan)) {
         enc_surface_destroy(out);
         return PMESH_E_MEMORY;
@@ -128,7 +127,6 @@ void enc_surface_destroy(enc_surface *s)
     pmesh_release(a, s->first, n, sizeof *s->first);
     pmesh_release(a, s->degree, n, sizeof *s->degree);
     pmesh_release(a, s->position, n, sizeof *s->position);
-    pmesh_release(a, s->mark, n, sizeof *s->mark);
     pmesh_release(a, s->changed, enc_bit_words(mesh->face_count),
                   sizeof *s->changed);
     *s = (enc_surface){ 0 };
@@ -141,19 +139,6 @@ enc_pair enc_surface_pair(const enc_surface *s, uint32_t h, bool child_is_end)
     if (child_is_end)
         return (enc_pair){ end, start, s->twin[h], h };
     return (enc_pair){ start, end, h, s->twin[h] };
-}
-
-void enc_surface_mark_ring(enc_surface *s, uint32_t v)
-{
-    if (++s->stamp == 0) {
-        memset(s->mark, 0, s->mesh->vertex_count * sizeof *s->mark);
-        s->stamp = 1;
-    }
-    uint32_t start = s->first[v];
-    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h)) {
-        s->mark[s->vertex[enc_next(h)]] = s->stamp;
-        s->mark[s->vertex[enc_prev(h)]] = s->stamp;
-    }
 }
 
 uint32_t enc_surface_fan_faces(const enc_surface *s, uint32_t c, bool *open)
@@ -194,21 +179,63 @@ static bool rings_fit(const enc_surface *s, uint32_t h)
     return twin == ENC_NONE || !enc_on_boundary(s, u) || !enc_on_boundary(s, v);
 }
 
-/* The ring of the start of h is marked. */
-static bool have_wings_alone(const enc_surface *s, uint32_t h)
-{
-    const uint32_t start = s->first[s->vertex[enc_next(h)]];
-    const uint32_t wings = s->twin[h] == ENC_NONE ? 1 : 2;
-    uint32_t common = 0, last;
+/* The neighbours of a vertex whose rings fit, in any order. */
+typedef struct gathered {
+    uint32_t count;
+    uint32_t member[ENC_MAX_RING + 4];
+    uint64_t some; /* bits of their numbers, to tell most others apart */
+} gathered;
 
-    h = start;
+static void gather(gathered *ring, uint32_t v)
+{
+    ring->member[ring->count++] = v;
+    ring->some |= UINT64_C(1) << v % 64;
+}
+
+static bool has(const gathered *ring, uint32_t v)
+{
+    if (!(ring->some >> v % 64 & 1))
+        return false;
+    for (uint32_t i = 0; i < ring->count; i++)
+        if (ring->member[i] == v)
+            return true;
+    return false;
+}
+
+static void gather_fan(const enc_surface *s, uint32_t start, gathered *ring)
+{
+    uint32_t h = start, last;
+
     do {
-        common += s->mark[s->vertex[enc_next(h)]] == s->stamp;
+        gather(ring, s->vertex[enc_next(h)]);
         last = enc_prev(h);
         h = s->twin[last];
     } while (h != ENC_NONE && h != start);
     if (h == ENC_NONE)
-        common += s->mark[s->vertex[last]] == s->stamp;
+        gather(ring, s->vertex[last]);
+}
+
+/* The link condition; the ends' rings fit. */
+static bool have_wings_alone(const enc_surface *s, uint32_t h)
+{
+    const uint32_t wings = s->twin[h] == ENC_NONE ? 1 : 2;
+    const uint32_t start = s->first[s->vertex[enc_next(h)]];
+    uint32_t common = 0, last;
+    gathered ring; /* large: filled as far as needed */
+
+    ring.count = 0;
+    ring.some = 0;
+    for (uint32_t fan = s->first[s->vertex[h]]; fan != ENC_NONE;
+         fan = enc_next_fan(s, fan))
+        gather_fan(s, fan, &ring);
+    h = start;
+    do {
+        common += has(&ring, s->vertex[enc_next(h)]);
+        last = enc_prev(h);
+        h = s->twin[last];
+    } while (h != ENC_NONE && h != start);
+    if (h == ENC_NONE)
+        common += has(&ring, s->vertex[last]);
     return common == wings;
 }
 
@@ -217,7 +244,7 @@ bool enc_surface_can_join(const enc_surface *s, uint32_t h)
     return rings_fit(s, h) && have_wings_alone(s, h);
 }
 
-bool enc_surface_can_join_signed(enc_surface *s, const enc_sign *sign,
+bool enc_surface_can_join_signed(const enc_surface *s, const enc_sign *sign,
                                  uint32_t h)
 {
     const uint32_t u = s->vertex[h], v = s->vertex[enc_next(h)];
@@ -228,10 +255,8 @@ bool enc_surface_can_join_signed(enc_surface *s, const enc_sign *sign,
     const uint32_t left = s->vertex[enc_prev(h)];
     const uint32_t right =
         twin == ENC_NONE ? left : s->vertex[enc_prev(twin)];
-    if (enc_sign_excludes(&sign[u], &sign[v], left, right))
-        return true;
-    enc_surface_mark_ring(s, u);
-    return have_wings_alone(s, h);
+    return enc_sign_excludes(&sign[u], &sign[v], left, right) ||
+           have_wings_alone(s, h);
 }
 
 static double dot(const double a[3], const double b[3])

@@ -39,8 +39,6 @@ typedef struct enc_surface {
     uint32_t *changed; /* bit per face: a corner of it has moved or become
                           another vertex; enc_reach.h clears them */
     uint32_t vertex_count, face_count; /* alive */
-    uint32_t *mark; /* per vertex: scratch of enc_surface_mark_ring() */
-    uint32_t stamp;
 } enc_surface;
 
 /* A directed pair: where the child goes, and the half-edges between the two. */
@@ -128,23 +126,19 @@ static inline enc_pool *enc_surface_pool(const enc_surface *s)
 /* The pair of half-edge h; its child is the start of h, or the end. */
 enc_pair enc_surface_pair(const enc_surface *s, uint32_t h, bool child_is_end);
 
-/* Gives the neighbours of v the current stamp. */
-void enc_surface_mark_ring(enc_surface *s, uint32_t v);
-
 /*
  * True if contracting h leaves an oriented manifold whose rings have 3 to
  * ENC_MAX_RING members: the two ends have no common neighbours but the wings
  * (link condition, the ghost being a vertex), and a wing has one to spare.
- * The ring of the start of h must be marked.
  *
  * What dies is never the last face of a piece, nor does a closed piece get
  * fewer than four: the wings' rings would be too small.
  */
 bool enc_surface_can_join(const enc_surface *s, uint32_t h);
 
-/* The same if there are signatures of all rings: none needs to be marked, but
- * one may be. Each vertex has one fan. */
-bool enc_surface_can_join_signed(enc_surface *s, const enc_sign *sign,
+/* The same, sooner, if there are signatures of all rings and each vertex has one
+ * fan. */
+bool enc_surface_can_join_signed(const enc_surface *s, const enc_sign *sign,
                                  uint32_t h);
 
 /* Faces of the fan of a corner, 4 standing for more; *open unless it is closed
