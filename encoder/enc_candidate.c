@@ -364,11 +364,25 @@ static void sum_both(const enc_pricing *p, const enc_surface *s,
     sum_about_midpoint(&ends[0], &ends[1], half, sum);
 }
 
-/* Q(x) of a vertex, where x is seen from it. */
-static double stored_value(const enc_pricing *p, uint32_t v, const double x[3])
+/* The quadric of v at x, as seen from it: enc_quadric_value() of recall(), read
+ * where it is. */
+static inline double stored_value(const enc_pricing *p, uint32_t v,
+                                  const double x[3])
 {
-    const enc_quadric q = recall(p, v);
-    return enc_quadric_value(&q, x);
+    const double *a = p->planes[v].a;
+    double s[3] = { a[0] * x[0] + a[1] * x[1] + a[2] * x[2],
+                    a[1] * x[0] + a[3] * x[1] + a[4] * x[2],
+                    a[2] * x[0] + a[4] * x[1] + a[5] * x[2] };
+    double c = 0;
+
+    if (p->moved) {
+        const enc_moved *m = &p->moved[v];
+        for (int i = 0; i < 3; i++)
+            s[i] = s[i] + m->b[i] + m->b[i];
+        c = m->c;
+    }
+    const double value = x[0] * s[0] + x[1] * s[1] + x[2] * s[2] + c;
+    return value > 0 ? value : 0;
 }
 
 /* Quadrics alone are asked for. */
@@ -436,14 +450,21 @@ typedef struct share {
     double b[3], c[4]; /* the terms of c in their order: sums round */
 } share;
 
-static share share_of(const enc_quadric *q, const double back[3])
+static inline share share_of(const enc_pricing *p, uint32_t v,
+                             const double back[3])
 {
-    share out;
+    static const enc_moved none = { { 0, 0, 0 }, 0 };
+    const double *a = p->planes[v].a;
+    const enc_moved *m = p->moved ? &p->moved[v] : &none;
+    share out = {
+        { a[0] * back[0] + a[1] * back[1] + a[2] * back[2] + m->b[0],
+          a[1] * back[0] + a[3] * back[1] + a[4] * back[2] + m->b[1],
+          a[2] * back[0] + a[4] * back[1] + a[5] * back[2] + m->b[2] },
+        { 0, 0, 0, m->c }
+    };
 
-    enc_quadric_slope(q, back, out.b);
     for (int i = 0; i < 3; i++)
-        out.c[i] = back[i] * (out.b[i] + q->b[i]);
-    out.c[3] = q->c;
+        out.c[i] = back[i] * (out.b[i] + m->b[i]);
     return out;
 }
 
@@ -468,14 +489,15 @@ static void estimate_moving(const enc_pricing *p, const enc_pair ways[2],
         { edge[0] / 2, edge[1] / 2, edge[2] / 2 },
         { -edge[0] / 2, -edge[1] / 2, -edge[2] / 2 }
     };
-    const enc_quadric child = recall(p, ways[0].child);
-    const enc_quadric parent = recall(p, ways[0].parent);
-    const share a = share_of(&child, half[1]), b = share_of(&parent, half[0]);
-    enc_quadric sum = { .weight = child.weight + parent.weight };
+    const enc_planes *child = &p->planes[ways[0].child];
+    const enc_planes *parent = &p->planes[ways[0].parent];
+    const share a = share_of(p, ways[0].child, half[1]);
+    const share b = share_of(p, ways[0].parent, half[0]);
+    enc_quadric sum = { .weight = child->weight + parent->weight };
     double x[3];
 
     for (int i = 0; i < 6; i++)
-        sum.a[i] = child.a[i] + parent.a[i];
+        sum.a[i] = child->a[i] + parent->a[i];
     for (int i = 0; i < 3; i++)
         sum.b[i] = a.b[i] + b.b[i];
     const bool found =
