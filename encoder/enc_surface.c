@@ -132,15 +132,6 @@ void enc_surface_destroy(enc_surface *s)
     *s = (enc_surface){ 0 };
 }
 
-enc_pair enc_surface_pair(const enc_surface *s, uint32_t h, bool child_is_end)
-{
-    const uint32_t start = s->vertex[h], end = s->vertex[enc_next(h)];
-
-    if (child_is_end)
-        return (enc_pair){ end, start, s->twin[h], h };
-    return (enc_pair){ start, end, h, s->twin[h] };
-}
-
 uint32_t enc_surface_fan_faces(const enc_surface *s, uint32_t c, bool *open)
 {
     uint32_t faces = 1, h = c;
@@ -165,7 +156,7 @@ static bool wing_can_spare(const enc_surface *s, uint32_t h)
 }
 
 /* All that is asked for but the link condition. */
-static bool rings_fit(const enc_surface *s, uint32_t h)
+static inline bool rings_fit(const enc_surface *s, uint32_t h)
 {
     const uint32_t u = s->vertex[h], v = s->vertex[enc_next(h)];
     const uint32_t twin = s->twin[h];

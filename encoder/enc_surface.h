@@ -124,7 +124,15 @@ static inline enc_pool *enc_surface_pool(const enc_surface *s)
 }
 
 /* The pair of half-edge h; its child is the start of h, or the end. */
-enc_pair enc_surface_pair(const enc_surface *s, uint32_t h, bool child_is_end);
+static inline enc_pair enc_surface_pair(const enc_surface *s, uint32_t h,
+                                        bool child_is_end)
+{
+    const uint32_t start = s->vertex[h], end = s->vertex[enc_next(h)];
+
+    if (child_is_end)
+        return (enc_pair){ end, start, s->twin[h], h };
+    return (enc_pair){ start, end, h, s->twin[h] };
+}
 
 /*
  * True if contracting h leaves an oriented manifold whose rings have 3 to
