@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "encoder/enc_star.h"
-#include "format/alloc.h"
 
 /* An optimal place may be this many squared edge lengths from the midpoint. */
 #define MAX_REACH_SQUARED 4.0
@@ -14,78 +13,6 @@
 
 /* Of equally good grid points the nearer one; relative to the trace. */
 #define ROUNDING_PULL 1e-2
-
-/* Contractions change what a vertex stands for, so a run has its own. */
-static bool copy_guide(const enc_mesh *mesh, enc_pricing *out)
-{
-    const pmesh_allocator *a = &mesh->allocator;
-    const enc_guide *g = mesh->guide;
-    const size_t n = mesh->vertex_count;
-
-    if (!g)
-        return true;
-    out->lock = g->lock;
-    if (g->factor && (out->factor = pmesh_alloc(a, n, sizeof *out->factor)))
-        memcpy(out->factor, g->factor, n * sizeof *out->factor);
-    if (!g->pull)
-        return out->factor || !g->factor;
-    out->pull = pmesh_alloc(a, n, sizeof *out->pull);
-    out->pulled = pmesh_alloc(a, n, sizeof *out->pulled);
-    if (!out->pull || !out->pulled)
-        return false;
-    memcpy(out->pull, g->pull, n * sizeof *out->pull);
-    for (size_t v = 0; v < n; v++)
-        out->pulled[v] = g->pull[v].weight > 0;
-    return out->factor || !g->factor;
-}
-
-pmesh_status enc_pricing_create(const enc_mesh *mesh,
-                                const pmesh_encoder_config *config,
-                                enc_pricing *out)
-{
-    const pmesh_allocator *a = &mesh->allocator;
-
-    *out = (enc_pricing){ .metric = config->metric,
-                          .placement = config->placement,
-                          .rule = { .cost = config->cost,
-                                    .hook = config->cost_hook,
-                                    .user = config->cost_user,
-                                    .unit = mesh->grid.step } };
-    memcpy(out->rule.camera, config->camera, sizeof config->camera);
-    memcpy(out->rule.origin, mesh->grid.origin, sizeof out->rule.origin);
-    const pmesh_status status = enc_looks_create(mesh, &out->looks);
-    if (status != PMESH_OK)
-        return status;
-    out->planes = pmesh_alloc(a, mesh->vertex_count, sizeof *out->planes);
-    if (config->metric == PMESH_ACCUMULATED)
-        out->moved =
-            pmesh_alloc_zero(a, mesh->vertex_count, sizeof *out->moved);
-    out->unevenness =
-        pmesh_alloc(a, mesh->vertex_count, sizeof *out->unevenness);
-    out->block = pmesh_alloc(a, enc_blocks(mesh), sizeof *out->block);
-    if (!out->planes || !out->unevenness || !out->block ||
-        !copy_guide(mesh, out) ||
-        (config->metric == PMESH_ACCUMULATED && !out->moved)) {
-        enc_pricing_destroy(mesh, out);
-        return PMESH_E_MEMORY;
-    }
-    return PMESH_OK;
-}
-
-void enc_pricing_destroy(const enc_mesh *mesh, enc_pricing *p)
-{
-    const pmesh_allocator *a = &mesh->allocator;
-
-    pmesh_release(a, p->planes, mesh->vertex_count, sizeof *p->planes);
-    pmesh_release(a, p->moved, mesh->vertex_count, sizeof *p->moved);
-    pmesh_release(a, p->unevenness, mesh->vertex_count, sizeof *p->unevenness);
-    pmesh_release(a, p->block, enc_blocks(mesh), sizeof *p->block);
-    pmesh_release(a, p->factor, mesh->vertex_count, sizeof *p->factor);
-    pmesh_release(a, p->pull, mesh->vertex_count, sizeof *p->pull);
-    pmesh_release(a, p->pulled, mesh->vertex_count, sizeof *p->pulled);
-    enc_looks_destroy(mesh, &p->looks);
-    *p = (enc_pricing){ 0 };
-}
 
 static double dot(const double a[3], const double b[3])
 {
@@ -124,63 +51,6 @@ static inline enc_quadric recall(const enc_pricing *p, uint32_t v)
         q.c = p->moved[v].c;
     }
     return q;
-}
-
-typedef struct beginning {
-    enc_pricing *pricing;
-    const enc_surface *surface;
-    bool planes; /* are to be made */
-} beginning;
-
-/* Edges count where their lower half-edge starts. */
-static void survey_block(enc_pricing *p, const enc_surface *s, uint32_t part)
-{
-    const uint32_t end = enc_block_end(s->mesh, part);
-    enc_block sums = { .length = 0 };
-
-    for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
-        enc_survey survey;
-        if (s->first[v] == ENC_NONE)
-            continue;
-        enc_star_survey(s, v, &survey);
-        p->unevenness[v] = (float)survey.unevenness;
-        if (p->sign)
-            p->sign[v] = survey.sign;
-        sums.length += survey.length;
-        sums.edges += survey.edges;
-    }
-    p->block[part] = sums;
-}
-
-/* Planes are one part: their sums go from face to face. */
-static void begin_part(void *user, uint32_t part, unsigned worker)
-{
-    const beginning *b = user;
-    const uint32_t blocks = enc_blocks(b->surface->mesh);
-
-    (void)worker;
-    if (part == 0 && b->planes)
-        enc_star_all_planes(b->surface, b->pricing->planes);
-    else if (part > 0 && part <= blocks)
-        survey_block(b->pricing, b->surface, part - 1);
-    else if (part > blocks)
-        enc_looks_begin(&b->pricing->looks, b->surface, part - blocks - 1);
-}
-
-void enc_pricing_begin(enc_pricing *p, const enc_surface *s, enc_taste taste,
-                       bool first_time)
-{
-    beginning b = { p, s, first_time || p->metric == PMESH_MEMORYLESS };
-    const uint32_t blocks = enc_blocks(s->mesh);
-    double sum = 0;
-
-    p->taste = taste;
-    enc_pool_run(enc_surface_pool(s),
-                 1 + blocks + enc_looks_parts(&p->looks, s->mesh), begin_part,
-                 &b);
-    for (uint32_t i = 0; i < blocks; i++)
-        sum += p->block[i].length;
-    p->edge_square = sum / (3.0 * s->face_count);
 }
 
 /* The quadrics of both ends about the midpoint, and half of the edge. */
@@ -251,14 +121,18 @@ static void constrained_end(const enc_quadric *pull, const double half[3],
 
 /* The best place of all within reach; else, false, one of the ends or halfway.
  * Constraints that are not to be met together, as two lines of a curve are
- * not, leave an end: that has met its own. */
-static bool free_place(const enc_quadric *sum, const enc_quadric *pull,
-                       const double half[3], double x[3])
+ * not, leave an end: that has met its own. `solved`: of the sum; or NULL, there
+ * is none. */
+static bool free_place(const enc_quadric *sum,
+                       const enc_quadric_solution *solved,
+                       const enc_quadric *pull, const double half[3],
+                       double x[3])
 {
-    const bool found =
-        enc_quadric_minimum(sum, NULL, x) && within_reach(x, half);
+    const bool found = solved && within_reach(solved->least, half);
 
-    if (!found)
+    if (found)
+        memcpy(x, solved->least, sizeof solved->least);
+    else
         best_of_three(sum, half, x);
     if (pull_at(pull, x) <= ENC_CONTENT)
         return found;
@@ -432,10 +306,12 @@ enc_offer enc_pricing_estimate(const enc_pricing *p, const enc_surface *s,
             factor_of(p, pair->child) * enc_quadric_value(&ends[0], back) +
             factor_of(p, pair->parent) * ends[1].c;
     } else {
+        enc_quadric_solution solved;
         enc_quadric shape, sum, pull;
         sum_both(p, s, pair, ends, half, false, &shape, &sum);
         sum_pulls(p, pair, half, &pull);
-        free_place(&sum, &pull, half, x);
+        const bool found = enc_quadric_solve(&sum, &solved);
+        free_place(&sum, found ? &solved : NULL, &pull, half, x);
         offer.distance = enc_quadric_value(&shape, x);
         offer.quadric = enc_quadric_value(&sum, x);
     }
@@ -535,21 +411,19 @@ void enc_pricing_estimate_both(const enc_pricing *p, const enc_surface *s,
 }
 
 /* Where the parent should go, relative to the midpoint. A constraint is worth
- * more than the volume. */
-static void optimal_place(const enc_surface *s, const enc_pair *pair,
-                          const enc_quadric *sum, const enc_quadric *pull,
-                          const double half[3], double x[3])
+ * more than the volume. `keep`: the plane of constant volume; or NULL. */
+static void optimal_place(const enc_quadric *sum, const enc_quadric *pull,
+                          const double half[3], const enc_plane *keep,
+                          double x[3])
 {
-    const double back[3] = { -half[0], -half[1], -half[2] };
-    const uint32_t none = ENC_NONE;
-    enc_plane keep = { { 0, 0, 0 }, 0 };
+    enc_quadric_solution solved;
+    const bool found = enc_quadric_solve(sum, &solved);
     double y[3];
 
-    if (!free_place(sum, pull, half, x) || enc_on_boundary(s, pair->parent))
+    if (!free_place(sum, found ? &solved : NULL, pull, half, x) || !keep)
         return;
-    enc_star_volume(s, pair->child, none, half, &keep);
-    enc_star_volume(s, pair->parent, pair->child, back, &keep);
-    if (enc_quadric_minimum(sum, &keep, y) && within_reach(y, half) &&
+    if (found && enc_quadric_least_on(&solved, keep, y) &&
+        within_reach(y, half) &&
         pull_at(pull, y) <= ENC_CONTENT &&
         enc_quadric_value(sum, y) <= VOLUME_GUARD * enc_quadric_value(sum, x))
         memcpy(x, y, sizeof y);
@@ -585,6 +459,31 @@ static void round_place(const enc_mesh *mesh, const enc_quadric *sum,
     }
 }
 
+/* The quadrics of both ends as they are now, child first, each about its end;
+ * and the plane of constant volume about the midpoint, unless keep is NULL. */
+static void current_quadrics(const enc_pricing *p, const enc_surface *s,
+                             const enc_pair *pair, const double half[3],
+                             enc_quadric ends[2], enc_plane *keep)
+{
+    const uint32_t end[2] = { pair->child, pair->parent };
+    const enc_star_keep keeps[2] = {
+        { ENC_NONE, { half[0], half[1], half[2] }, keep },
+        { pair->child, { -half[0], -half[1], -half[2] }, keep }
+    };
+
+    if (keep)
+        *keep = (enc_plane){ .offset = 0 };
+    for (int k = 0; k < 2; k++) {
+        if (p->metric == PMESH_MEMORYLESS) {
+            enc_star_quadric(s, end[k], &ends[k], keep ? &keeps[k] : NULL);
+        } else {
+            ends[k] = recall(p, end[k]);
+            if (keep)
+                enc_star_volume(s, end[k], &keeps[k]);
+        }
+    }
+}
+
 enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
                             const enc_pair *pair)
 {
@@ -594,22 +493,20 @@ enc_offer enc_pricing_offer(const enc_pricing *p, const enc_surface *s,
     enc_offer offer = { .place = { to[0], to[1], to[2] } };
     double edge[3], half[3], middle[3], x[3];
 
-    if (p->metric == PMESH_MEMORYLESS) {
-        enc_star_quadric(s, pair->child, &ends[0]);
-        enc_star_quadric(s, pair->parent, &ends[1]);
-    } else {
-        ends[0] = recall(p, pair->child);
-        ends[1] = recall(p, pair->parent);
-    }
+    const bool moves = parent_moves(p, s, pair);
+    const bool keeps = moves && !enc_on_boundary(s, pair->parent);
+    enc_plane keep;
+
     difference(from, to, edge);
     for (int i = 0; i < 3; i++) {
         half[i] = edge[i] / 2;
         middle[i] = to[i] + half[i];
     }
+    current_quadrics(p, s, pair, half, ends, keeps ? &keep : NULL);
     sum_both(p, s, pair, ends, half, true, &shape, &sum);
-    if (parent_moves(p, s, pair)) {
+    if (moves) {
         sum_pulls(p, pair, half, &pull);
-        optimal_place(s, pair, &sum, &pull, half, x);
+        optimal_place(&sum, &pull, half, keeps ? &keep : NULL, x);
         if (pull.weight > 0)
             enc_quadric_add_here(&sum, &pull, &steered);
         round_place(s->mesh, pull.weight > 0 ? &steered : &sum,

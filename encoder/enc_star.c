@@ -61,14 +61,22 @@ static void hold_edge(const enc_surface *s, uint32_t h, double weight,
         enc_quadric_add_plane(q, upright, weight * dot(along, along));
 }
 
-static void add_face(const enc_surface *s, uint32_t h, enc_quadric *q)
+static void add_plane(const double normal[3], enc_quadric *q)
 {
-    double normal[3];
-
-    enc_surface_normal(s, h, s->position[s->vertex[h]], normal);
     const double square = dot(normal, normal);
     if (square > 0)
         enc_quadric_add_plane(q, normal, 0.5 * sqrt(square));
+}
+
+static void add_volume(const enc_surface *s, uint32_t h, const double normal[3],
+                       const enc_star_keep *keep)
+{
+    if (s->vertex[enc_next(h)] == keep->other ||
+        s->vertex[enc_prev(h)] == keep->other)
+        return;
+    for (int i = 0; i < 3; i++)
+        keep->plane->n[i] += normal[i];
+    keep->plane->offset += dot(normal, keep->offset);
 }
 
 /* Seams and borders that meet at v. */
@@ -86,12 +94,18 @@ static void add_lines(const enc_surface *s, uint32_t v, enc_quadric *q)
     }
 }
 
-static void add_fan(const enc_surface *s, uint32_t start, enc_quadric *q)
+static void add_fan(const enc_surface *s, uint32_t start, enc_quadric *q,
+                    const enc_star_keep *keep)
 {
+    const int32_t *at = s->position[s->vertex[start]];
     uint32_t h = start, last;
 
     do {
-        add_face(s, h, q);
+        double normal[3];
+        enc_surface_normal(s, h, at, normal);
+        add_plane(normal, q);
+        if (keep)
+            add_volume(s, h, normal, keep);
         last = enc_prev(h);
         h = s->twin[last];
     } while (h != ENC_NONE && h != start);
@@ -101,12 +115,13 @@ static void add_fan(const enc_surface *s, uint32_t start, enc_quadric *q)
     }
 }
 
-void enc_star_quadric(const enc_surface *s, uint32_t v, enc_quadric *q)
+void enc_star_quadric(const enc_surface *s, uint32_t v, enc_quadric *q,
+                      const enc_star_keep *keep)
 {
     memset(q, 0, sizeof *q);
     for (uint32_t fan = s->first[v]; fan != ENC_NONE;
          fan = enc_next_fan(s, fan))
-        add_fan(s, fan, q);
+        add_fan(s, fan, q, keep);
     add_lines(s, v, q);
 }
 
@@ -124,10 +139,12 @@ void enc_star_all_planes(const enc_surface *s, enc_planes *planes)
     for (uint32_t f = 0; f < s->mesh->face_count; f++) {
         const uint32_t *corner = &s->vertex[3 * f];
         enc_quadric face = { .c = 0 };
+        double normal[3];
 
         if (corner[0] == ENC_NONE)
             continue;
-        add_face(s, 3 * f, &face);
+        enc_surface_normal(s, 3 * f, s->position[corner[0]], normal);
+        add_plane(normal, &face);
         for (unsigned k = 0; k < 3; k++) {
             add_planes(&face, &planes[corner[k]]);
             if (s->twin[3 * f + k] == ENC_NONE) {
@@ -194,18 +211,13 @@ void enc_star_survey(const enc_surface *s, uint32_t v, enc_survey *out)
     out->unevenness = dot(sum, sum) / ((double)count * count);
 }
 
-void enc_star_volume(const enc_surface *s, uint32_t v, uint32_t other,
-                     const double offset[3], enc_plane *keep)
+void enc_star_volume(const enc_surface *s, uint32_t v,
+                     const enc_star_keep *keep)
 {
     uint32_t start = s->first[v];
     for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h)) {
-        if (s->vertex[enc_next(h)] != other &&
-            s->vertex[enc_prev(h)] != other) {
-            double n[3];
-            enc_surface_normal(s, h, s->position[v], n);
-            for (int i = 0; i < 3; i++)
-                keep->n[i] += n[i];
-            keep->offset += dot(n, offset);
-        }
+        double normal[3];
+        enc_surface_normal(s, h, s->position[v], normal);
+        add_volume(s, h, normal, keep);
     }
 }

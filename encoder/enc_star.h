@@ -18,8 +18,17 @@ typedef struct enc_planes {
     double weight;
 } enc_planes;
 
-/* The planes of v as it is now, about v. */
-void enc_star_quadric(const enc_surface *s, uint32_t v, enc_quadric *q);
+/* A share in the plane of constant volume: what the faces of a vertex add to it,
+ * without those of another one. */
+typedef struct enc_star_keep {
+    uint32_t other;   /* or ENC_NONE */
+    double offset[3]; /* of the vertex from the plane's centre */
+    enc_plane *plane;
+} enc_star_keep;
+
+/* The planes of v as it is now, about v; and its share, unless `keep` is NULL. */
+void enc_star_quadric(const enc_surface *s, uint32_t v, enc_quadric *q,
+                      const enc_star_keep *keep);
 
 /* The same for all vertices at once, for a third of the work. */
 void enc_star_all_planes(const enc_surface *s, enc_planes *planes);
@@ -34,9 +43,8 @@ typedef struct enc_survey {
 
 void enc_star_survey(const enc_surface *s, uint32_t v, enc_survey *out);
 
-/* Adds to the plane of constant volume the faces of v without those of
- * `other` (ENC_NONE: all); v lies at `offset`. */
-void enc_star_volume(const enc_surface *s, uint32_t v, uint32_t other,
-                     const double offset[3], enc_plane *keep);
+/* The share alone. */
+void enc_star_volume(const enc_surface *s, uint32_t v,
+                     const enc_star_keep *keep);
 
 #endif

@@ -113,7 +113,7 @@ TEST(guide_moves_the_place_towards_the_heavier_planes)
         const enc_offer offer = enc_pricing_offer(&pricing, &s, &pair);
         enc_quadric child;
         double x[3];
-        enc_star_quadric(&s, pair.child, &child);
+        enc_star_quadric(&s, pair.child, &child, NULL);
         for (int k = 0; k < 3; k++)
             x[k] = offer.place[k] - s.position[pair.child][k];
         const double value = enc_quadric_value(&child, x);
