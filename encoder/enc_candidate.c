@@ -356,6 +356,16 @@ static double sum_rests(const share *first, const share *second)
     return c;
 }
 
+/* As enc_quadric_value() begins. */
+static double value_but_rest(const enc_quadric *q, const double x[3])
+{
+    double s[3];
+
+    enc_quadric_slope(q, x, s);
+    return x[0] * (s[0] + q->b[0]) + x[1] * (s[1] + q->b[1]) +
+           x[2] * (s[2] + q->b[2]);
+}
+
 /* Both directions of a pair whose parent moves, without constraints: they have
  * one place and, but for rounding, one cost. */
 static void estimate_moving(const enc_pricing *p, const enc_pair ways[2],
@@ -376,13 +386,18 @@ static void estimate_moving(const enc_pricing *p, const enc_pair ways[2],
         sum.a[i] = child->a[i] + parent->a[i];
     for (int i = 0; i < 3; i++)
         sum.b[i] = a.b[i] + b.b[i];
+    const double rest[2] = { sum_rests(&a, &b), sum_rests(&b, &a) };
     const bool found =
         enc_quadric_minimum(&sum, NULL, x) && within_reach(x, half[0]);
+    const double found_value = found ? value_but_rest(&sum, x) : 0;
     for (int k = 0; k < 2; k++) {
-        sum.c = k == 0 ? sum_rests(&a, &b) : sum_rests(&b, &a);
-        if (!found)
+        double value = found_value + rest[k];
+        if (!found) {
+            sum.c = rest[k];
             best_of_three(&sum, half[k], x);
-        out[k].quadric = enc_quadric_value(&sum, x);
+            value = enc_quadric_value(&sum, x);
+        }
+        out[k].quadric = value > 0 ? value : 0;
         out[k].cost = plain_cost(p, &ways[k], 4 * dot(half[k], half[k]),
                                  out[k].quadric);
     }

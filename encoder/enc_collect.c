@@ -168,14 +168,15 @@ static void queue_pair(enc_run *run, uint32_t h, uint8_t state)
         state = guided_state(run, h, state);
     run->edge_state[h] = state;
     if (may(state, false) && may(state, true)) {
-        const enc_pair ways[2] = { enc_run_pair(run, h, false),
-                                   enc_run_pair(run, h, true) };
+        const enc_pair forth = enc_run_pair(run, h, false);
+        const enc_pair ways[2] = { forth, enc_pair_back(forth) };
         enc_offer offer[2];
         enc_pricing_estimate_both(&run->pricing, &run->surface, ways, offer);
-        const enc_entry forth = entry_of(state, h, false, &offer[0]);
-        const enc_entry back = entry_of(state, h, true, &offer[1]);
-        best = back.key < forth.key ? back : forth;
-        quadric = offer[back.key < forth.key].quadric;
+        const enc_entry entry[2] = { entry_of(state, h, false, &offer[0]),
+                                     entry_of(state, h, true, &offer[1]) };
+        const bool back = entry[1].key < entry[0].key;
+        best = entry[back];
+        quadric = offer[back].quadric;
     } else if (may(state, false) || may(state, true)) {
         best = enc_run_entry(run, h, may(state, true), &quadric);
     }

@@ -134,6 +134,12 @@ static inline enc_pair enc_surface_pair(const enc_surface *s, uint32_t h,
     return (enc_pair){ start, end, h, s->twin[h] };
 }
 
+/* The other direction of a pair. */
+static inline enc_pair enc_pair_back(enc_pair pair)
+{
+    return (enc_pair){ pair.parent, pair.child, pair.right, pair.left };
+}
+
 /*
  * True if contracting h leaves an oriented manifold whose rings have 3 to
  * ENC_MAX_RING members: the two ends have no common neighbours but the wings
