@@ -63,6 +63,10 @@ static uint64_t code_size(pmesh_coder *coder, const pmesh_expectation *at,
 int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_expectation *at,
                         int64_t value)
 {
+    if (coder->relay) {
+        coder->relay->near(coder->relay->user, at, value);
+        return value;
+    }
     const int64_t center = (at->mean + FRACTION / 2) >> FRACTION_BITS;
     const int64_t part = at->mean - center * FRACTION; /* -8 .. 7 */
     const unsigned lean = part < -2 ? 0 : part > 2 ? 2 : 1;
