@@ -13,8 +13,8 @@
 enum {
     SIZE = 1 << 20,    /* a reader half as fast falls behind by that much in a
                           block of 64 KiB */
-    PORTION = 1 << 17, /* handed over at once: the reader is soon done and asleep,
-                          and waking it takes the writer 10 us */
+    PORTION = 1 << 17, /* handed over at once: the reader is soon done, and
+                          waking it takes the writer 10 us */
     HEAD = 8           /* before an entry: its size with this; 0: go on at the
                           start */
 };

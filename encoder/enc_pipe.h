@@ -9,8 +9,8 @@
  *   enc_pipe_close(p);
  *
  * The reader gets what is written by portions; the writer waits if it is far
- * ahead. Behind the end the pipe is opened again for the next lot. A reader that
- * comes behind the close does not wait, and may be the writer's thread.
+ * ahead. Behind the end the pipe is opened again for the next lot. A reader
+ * that comes behind the close does not wait, and may be the writer's thread.
  */
 #ifndef ENC_PIPE_H
 #define ENC_PIPE_H

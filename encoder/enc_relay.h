@@ -16,7 +16,7 @@
 
 typedef struct enc_relay enc_relay;
 
-/* For blocks of `codec`, from now on for all of them: it has the models of cuts.
+/* For blocks of `codec`, from now on all of them: it has the models of cuts.
  * NULL if there is no pool or no memory, or if the mesh has attributes,
  * materials or vertices of several fans; it can be done without. */
 enc_relay *enc_relay_create(const pmesh_allocator *allocator, enc_pool *pool,

@@ -71,6 +71,44 @@ TEST(pool_leaves_the_calling_thread_free)
     enc_pool_destroy(pool);
 }
 
+/* ---- aside --------------------------------------------------------------- */
+
+typedef struct chore {
+    enc_pool *pool;
+    uint32_t done; /* parts */
+    bool disorder, busy;
+} chore;
+
+static void do_aside(void *user, uint32_t part, unsigned worker)
+{
+    chore *c = user;
+
+    c->disorder |= c->busy || part != c->done;
+    c->busy = true;
+    for (int i = 0; i < 10; i++)
+        enc_pool_give_way(c->pool, worker);
+    c->busy = false;
+    c->done++;
+}
+
+TEST(pool_does_work_aside_in_order_while_loops_go_on)
+{
+    for (uint32_t threads = 2; threads <= WORKERS; threads++) {
+        enc_pool *pool = pool_of(threads);
+        for (uint32_t parts = 0; parts <= 60; parts += 20) {
+            chore c = { .pool = pool };
+            enc_pool_aside(pool, do_aside, &c);
+            for (uint32_t i = 0; i < parts; i++) {
+                enc_pool_aside_more(pool);
+                check_counts(pool);
+            }
+            enc_pool_aside_end(pool);
+            CHECK(c.done == parts && !c.disorder);
+        }
+        enc_pool_destroy(pool);
+    }
+}
+
 /* ---- the pipe ------------------------------------------------------------ */
 
 enum { ENTRIES = 30000 }; /* several times what the pipe holds */
