@@ -35,7 +35,7 @@ struct enc_relay {
 
 /* ---- what is told -------------------------------------------------------- */
 
-typedef enum kind { FLAG, CUT, NEAR, PART } kind;
+typedef enum kind { FLAG, CUT, RESIDUAL, PART } kind;
 
 typedef struct flag {
     kind kind;
@@ -43,11 +43,10 @@ typedef struct flag {
     pmesh_bit *model;
 } flag;
 
-typedef struct near {
+typedef struct residual {
     kind kind;
-    pmesh_expectation at;
-    int64_t value;
-} near;
+    pmesh_residual coded;
+} residual;
 
 typedef struct part {
     kind kind;
@@ -76,11 +75,12 @@ static void tell_flag(void *user, pmesh_bit *model, bool splits)
     *f = (flag){ FLAG, splits, model };
 }
 
-static void tell_near(void *user, const pmesh_expectation *at, int64_t value)
+static void tell_residual(void *user, const pmesh_residual *coded)
 {
     const enc_relay *r = user;
-    near *n = enc_pipe_room(r->pipe, sizeof *n);
-    *n = (near){ NEAR, *at, value };
+    residual *t = enc_pipe_room(r->pipe, sizeof *t);
+    t->kind = RESIDUAL;
+    t->coded = *coded;
 }
 
 static void tell_part(void *user, int which)
@@ -165,7 +165,7 @@ static void follow(void *user, uint32_t whole, unsigned worker)
     while ((told = enc_pipe_next(r->pipe))) {
         const void *what = told;
         const flag *f = what;
-        const near *n = what;
+        const residual *p = what;
         switch (*told) {
         case FLAG:
             pmesh_code_bit(r->coder, f->model, f->splits);
@@ -173,8 +173,8 @@ static void follow(void *user, uint32_t whole, unsigned worker)
         case CUT:
             code_cut(r, what);
             break;
-        case NEAR:
-            pmesh_code_near(r->coder, &n->at, n->value);
+        case RESIDUAL:
+            pmesh_residual_code_again(r->coder, r->codec->bounds, &p->coded);
             break;
         case PART:
             count_part(r, ((const part *)what)->part);
@@ -230,7 +230,8 @@ enc_relay *enc_relay_create(const pmesh_allocator *a, enc_pool *pool,
     r->allocator = *a;
     r->pool = pool;
     r->codec = codec;
-    r->front = (pmesh_relay){ r, tell_flag, tell_cut, tell_near, tell_part };
+    r->front = (pmesh_relay){ r, tell_flag, tell_cut, tell_residual,
+                              tell_part };
     r->pipe = enc_pipe_create(a);
     if (r->pipe && lay_around(r))
         return r;

@@ -5,7 +5,7 @@
  * The encoder knows what the stream will say. So one thread can walk through
  * the mesh without a look at the models of what is coded there, and the other,
  * behind it, codes what that tells: flags; cuts, with what they need of the
- * mesh around; and coordinates, with what is expected of them. The bytes are
+ * mesh around; and positions, with what is expected of them. The bytes are
  * those of one thread.
  */
 #ifndef ENC_RELAY_H

@@ -33,7 +33,7 @@ typedef enum pmesh_visit {
 } pmesh_visit;
 
 struct pmesh_codec;
-struct pmesh_expectation; /* see residual.h */
+struct pmesh_residual; /* see residual.h */
 
 typedef struct pmesh_fans pmesh_fans; /* see join.h */
 typedef struct pmesh_parting pmesh_parting;
@@ -83,7 +83,7 @@ typedef struct pmesh_relay {
     void (*flag)(void *user, pmesh_bit *model, bool splits);
     void (*cut)(void *user, const struct pmesh_codec *c, uint32_t v,
                 const pmesh_ring *ring, const pmesh_cut *cut);
-    void (*near)(void *user, const struct pmesh_expectation *at, int64_t value);
+    void (*residual)(void *user, const struct pmesh_residual *residual);
     void (*part)(void *user, int part); /* ends here: see part_size */
 } pmesh_relay;
 
