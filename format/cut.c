@@ -346,7 +346,8 @@ static inline lanes weigh_shape(options *list, const common *o, uint32_t lane,
 }
 
 /* In a row's first `live` lanes nothing, in the others TAKEN. */
-#define X8(x)  x, x, x, x, x, x, x, x
+#define X7(x)  x, x, x, x, x, x, x
+#define X8(x)  X7(x), x
 #define X24(x) X8(x), X8(x), X8(x)
 static const int16_t barrier[] = { X24(INT16_MIN), X24(INT16_MIN), X24(TAKEN),
                                    X24(TAKEN) };
@@ -460,22 +461,32 @@ static uint32_t count_options(const cutter *s)
 
 /* ---- coding -------------------------------------------------------------- */
 
-static int16_t least_cost(const options *list)
+/* The first of those that cost least, and how much. Where it is nobody can
+ * tell: each lane keeps its own, and there is no branch. */
+static uint32_t cheapest(const options *list, int16_t *least)
 {
-    lanes least = lanes_of(TAKEN);
-    for (uint32_t k = 0; k < list->count; k += LANES)
-        least = lanes_min(least, lanes_load(list->cost + k));
-    return (int16_t)lanes_least(least);
+    static const int16_t lane[LANES] = { 0, 1, 2, 3, 4, 5, 6, 7 };
+    lanes low = lanes_load(list->cost), at = lanes_load(lane), here = at;
+    for (uint32_t k = LANES; k < list->count; k += LANES) {
+        const lanes cost = lanes_load(list->cost + k);
+        here = lanes_add(here, lanes_of(LANES));
+        at = lanes_max(at, lanes_and(lanes_less(cost, low), here));
+        low = lanes_min(low, cost);
+    }
+    *least = (int16_t)lanes_least(low);
+    const lanes dearer = lanes_less(lanes_of(*least), low);
+    at = lanes_max(at, lanes_and(dearer, lanes_of(INT16_MAX)));
+    return (uint32_t)lanes_least(at);
 }
 
-/* The first one that costs so much. */
-static uint32_t cheapest(const options *list, int16_t least)
+/* All lanes around the option are stored: loads that follow wait for a part. */
+static void take(options *list, uint32_t option)
 {
-    uint32_t k = 0;
-    int place = lanes_find(lanes_load(list->cost), least);
-    while (place == LANES)
-        place = lanes_find(lanes_load(list->cost + (k += LANES)), least);
-    return k + (uint32_t)place;
+    static const int16_t only[] = { X7(INT16_MIN), TAKEN, X7(INT16_MIN) };
+    const uint32_t lane = option % LANES;
+    int16_t *cost = list->cost + (option - lane);
+    lanes_store(cost,
+                lanes_max(lanes_load(cost), lanes_load(only + 7 - lane)));
 }
 
 /* About 2^(-cost) of every option, that of the least cost as 2^15: (1 - x)^16,
@@ -519,8 +530,8 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
 {
     options *list = s->list;
     const uint32_t count = count_options(s);
-    int16_t least = least_cost(list);
-    uint32_t best = cheapest(list, least);
+    int16_t least;
+    uint32_t best = cheapest(list, &least);
     make_shares(list, least);
     uint32_t sum = list->share_sum;
     *expected = false;
@@ -535,9 +546,9 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
             *expected = rank == 0 && odds >= GOOD_ODDS;
             break;
         }
-        list->cost[best] = TAKEN;
+        take(list, best);
         sum -= share;
-        best = cheapest(list, least_cost(list));
+        best = cheapest(list, &least);
     }
     return best;
 }
