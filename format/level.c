@@ -224,7 +224,7 @@ static pmesh_status visit(pmesh_codec *c, pmesh_coder *coder,
                           const pmesh_oracle *oracle, uint32_t v)
 {
     pmesh_ring ring;
-    if (!pmesh_ring_gather(&c->mesh, v, &ring)) {
+    if (!pmesh_codec_ring(c, v, &ring)) {
         queue_rings(c, v);
         return PMESH_OK;
     }
@@ -266,29 +266,36 @@ static int32_t clamp(int64_t value, int32_t limit)
     return value < 0 ? 0 : value > limit ? limit : (int32_t)value;
 }
 
-/* NULL if the ring is too large. */
-static const pmesh_site *find_site(const pmesh_codec *c, uint32_t v,
-                                   uint32_t partner, pmesh_site *site)
+/* Up to PMESH_ABREAST children from u on, and their parents. */
+static uint32_t next_family(const pmesh_codec *c, uint32_t u,
+                            uint32_t child[PMESH_ABREAST],
+                            uint32_t parent[PMESH_ABREAST])
 {
-    return pmesh_site_find(c, v, partner, site) ? site : NULL;
-}
-
-static const pmesh_ring *ring_of(const pmesh_site *site)
-{
-    return site ? &site->ring : NULL;
+    const uint32_t end = c->block.vertex + c->block.vertex_count;
+    uint32_t count = 0;
+    for (; u < end && count < PMESH_ABREAST; u++, count++) {
+        child[count] = u;
+        parent[count] = c->mesh.parent[u];
+    }
+    return count;
 }
 
 /* Connectivity is complete now: a better guess where every child will be. */
 static void guess_positions(pmesh_codec *c)
 {
-    const uint32_t begin = c->block.vertex;
-    for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        pmesh_ring ring;
-        int32_t position[3];
-        if (!pmesh_ring_gather(&c->mesh, u, &ring))
-            continue;
-        pmesh_guess(c, u, &ring, position);
-        pmesh_place(c, u, &ring, position);
+    uint32_t child[PMESH_ABREAST], parent[PMESH_ABREAST], count;
+    pmesh_site site[PMESH_ABREAST];
+    for (uint32_t u = c->block.vertex;
+         (count = next_family(c, u, child, parent)) > 0; u += count) {
+        pmesh_sites_rings(c, child, count, site);
+        for (uint32_t i = 0; i < count; i++) {
+            const pmesh_ring *ring = &site[i].ring;
+            int32_t position[3];
+            if (ring->count == 0)
+                continue;
+            pmesh_guess(c, u + i, ring, position);
+            pmesh_place(c, u + i, ring, position);
+        }
     }
 }
 
@@ -321,39 +328,50 @@ static bool code_position(pmesh_codec *c, pmesh_coder *coder,
 }
 
 static bool code_moved_parent(pmesh_codec *c, pmesh_coder *coder,
-                              const pmesh_oracle *oracle, uint32_t u)
+                              const pmesh_oracle *oracle, uint32_t u,
+                              const pmesh_site *site)
 {
     pmesh_mesh *m = &c->mesh;
     const uint32_t v = m->parent[u];
     const int32_t *before = c->unsplit[u - c->block.vertex];
     int32_t mirrored[3];
-    pmesh_site space;
-    const pmesh_site *site = find_site(c, v, u, &space);
     pmesh_prediction p;
     for (int k = 0; k < 3; k++) /* parent and child part about evenly */
         mirrored[k] =
             clamp(2 * (int64_t)before[k] - m->position[u][k], c->bounds[k]);
     pmesh_predict(c, &c->place[1], v, site, mirrored, u + 1, &p);
-    return code_position(c, coder, oracle, &c->place[1], v, ring_of(site), &p);
+    return code_position(c, coder, oracle, &c->place[1], v, &site->ring, &p);
+}
+
+static bool code_child(pmesh_codec *c, pmesh_coder *coder,
+                       const pmesh_oracle *oracle, uint32_t u,
+                       const pmesh_site *site)
+{
+    const pmesh_mesh *m = &c->mesh;
+    const int32_t *parent = m->position[m->parent[u]];
+    pmesh_prediction p;
+    pmesh_predict(c, &c->place[0], u, site, parent, u, &p);
+    if (!code_position(c, coder, oracle, &c->place[0], u, &site->ring, &p))
+        return false;
+    c->importance[u - c->block.vertex] = importance_of(m, u, parent, &p);
+    return true;
 }
 
 static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
                                    const pmesh_oracle *oracle)
 {
-    pmesh_mesh *m = &c->mesh;
-    const uint32_t begin = c->block.vertex;
-    for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        const uint32_t v = m->parent[u];
-        pmesh_site space;
-        const pmesh_site *site = find_site(c, u, v, &space);
-        pmesh_prediction p;
-        pmesh_predict(c, &c->place[0], u, site, m->position[v], u, &p);
-        if (!code_position(c, coder, oracle, &c->place[0], u, ring_of(site),
-                           &p))
-            return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
-        c->importance[u - begin] = importance_of(m, u, m->position[v], &p);
-        if (c->sizes.moves && !code_moved_parent(c, coder, oracle, u))
-            return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
+    uint32_t child[PMESH_ABREAST], parent[PMESH_ABREAST], count;
+    pmesh_site site[PMESH_ABREAST], moved[PMESH_ABREAST];
+    for (uint32_t u = c->block.vertex;
+         (count = next_family(c, u, child, parent)) > 0; u += count) {
+        pmesh_sites_find(c, child, parent, count, site);
+        if (c->sizes.moves)
+            pmesh_sites_find(c, parent, child, count, moved);
+        for (uint32_t i = 0; i < count; i++)
+            if (!code_child(c, coder, oracle, u + i, &site[i]) ||
+                (c->sizes.moves &&
+                 !code_moved_parent(c, coder, oracle, u + i, &moved[i])))
+                return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
     }
     return PMESH_OK;
 }

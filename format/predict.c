@@ -40,59 +40,6 @@ static inline int32_t scaled(const scale *by, int32_t value)
            (1 << by->up);
 }
 
-/* ---- sites ------------------------------------------------------------- */
-
-static uint32_t index_of(const pmesh_ring *ring, uint32_t vertex)
-{
-    uint32_t i = 0;
-    while (i + 1 < ring->count && ring->vertex[i] != vertex)
-        i++;
-    return i;
-}
-
-/* Member `steps` places behind the partner. */
-static uint32_t behind_partner(const pmesh_site *s, uint32_t steps)
-{
-    const uint32_t i = s->partner + steps, n = s->ring.count;
-    return i < n ? i : i - n;
-}
-
-/* What lies opposite of x in the ring of its neighbour y, where half-edge h
- * leads from x to y: two vertices, the same twice if one does. */
-static void look_beyond(const pmesh_codec *c, uint32_t h, uint32_t y,
-                        uint32_t beyond[2])
-{
-    const pmesh_mesh *m = &c->mesh;
-    const uint32_t n = c->near[y].degree;
-    uint32_t now = m->twin[h], before = now;
-    if (n > PMESH_MAX_RING || now == PMESH_NONE)
-        return;
-    for (uint32_t i = 0; i < (n + 1) / 2; i++) {
-        before = now;
-        now = pmesh_turn_left(m, now);
-        if (now == PMESH_NONE)
-            return;
-    }
-    beyond[1] = m->vertex[pmesh_next(now)];
-    beyond[0] = n % 2 ? m->vertex[pmesh_next(before)] : beyond[1];
-}
-
-bool pmesh_site_find(const pmesh_codec *c, uint32_t x, uint32_t partner,
-                     pmesh_site *s)
-{
-    const pmesh_ring *ring = &s->ring;
-    if (!pmesh_ring_gather(&c->mesh, x, &s->ring))
-        return false;
-    s->partner = index_of(ring, partner);
-    const uint32_t i[2] = { s->partner, behind_partner(s, ring->count / 2) };
-    for (int t = 0; t < 2; t++) {
-        s->beyond[t][0] = s->beyond[t][1] = PMESH_NONE;
-        if (i[t] < ring->face_count)
-            look_beyond(c, ring->edge[i[t]], ring->vertex[i[t]], s->beyond[t]);
-    }
-    return true;
-}
-
 /* ---- guesses ------------------------------------------------------------ */
 
 /* If its parent stays, the mean of the ring, moved against the way that the
@@ -135,6 +82,13 @@ void pmesh_guess(const pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
 }
 
 /* ---- terms, from the ring's mean ---------------------------------------- */
+
+/* Member `steps` places behind the partner. */
+static uint32_t behind_partner(const pmesh_site *s, uint32_t steps)
+{
+    const uint32_t i = s->partner + steps, n = s->ring.count;
+    return i < n ? i : i - n;
+}
 
 /* What a walk over the ring's members tells. */
 typedef struct walk {
@@ -341,7 +295,7 @@ void pmesh_predict(pmesh_codec *c, pmesh_place_models *models, uint32_t x,
 {
     pmesh_star s;
     walk w;
-    if (!site) {
+    if (site->ring.count == 0) {
         predict_blindly(partner_position, out);
         return;
     }
@@ -526,7 +480,7 @@ void pmesh_place(pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
     if (!(by[0] | by[1] | by[2]))
         return;
     memcpy(at, position, sizeof *c->mesh.position);
-    if (!ring || c->mesh.fan) {
+    if (ring->count == 0 || c->mesh.fan) {
         shift_neighbours(c, x, by);
         return;
     }
