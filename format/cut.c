@@ -114,6 +114,9 @@ static uint32_t gather(cutter *s, const pmesh_codec *c, uint32_t v,
     const quads from = quads_triple(position[v]);
     quads all = quads_of(0);
     s->newborn = 0;
+    const uint32_t end = padded(s->n);
+    for (uint32_t i = end - LANES; i < end; i++) /* a number known beforehand */
+        d[i] = quads_of(0);
     for (uint32_t i = 0; i < s->n; i++) {
         const uint32_t x = ring->vertex[i];
         d[i] = quads_sub(quads_triple(position[x]), from);
@@ -124,8 +127,6 @@ static uint32_t gather(cutter *s, const pmesh_codec *c, uint32_t v,
             drift[k] += position[x][k] - position[c->mesh.parent[x]][k];
         s->newborn++;
     }
-    for (uint32_t i = s->n; i < padded(s->n); i++)
-        d[i] = quads_of(0);
     return quads_any(all);
 }
 
@@ -237,10 +238,11 @@ static void weigh_wings(cutter *s, const pmesh_codec *c, const pmesh_ring *ring)
     const lanes none = lanes_of(0),
                 by = lanes_of(
                     (int16_t)(s->weights->reach[s->open][s->newborn > 0] >> 4));
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < LANES; i += QUADS)
+            quads_store(sum[side] + count - LANES + i, quads_of(0));
     look_up_wings(s, c, ring, sum);
     for (int side = 0; side < 2; side++) {
-        for (uint32_t i = s->n; i < count; i++)
-            sum[side][i] = 0;
         for (uint32_t i = 0; i < count; i += LANES) {
             const lanes reach = lanes_load(s->reach + i);
             const quads first = quads_add(quads_first(by, none, reach, none),

@@ -48,12 +48,12 @@ static uint32_t gather(const pmesh_codec *c, const pmesh_ring *ring,
     const uint32_t n = ring->count, end = padded(n + 1);
     const quads from = quads_triple(base);
     quads all = quads_of(1);
+    for (uint32_t i = end - LANES; i < end; i++) /* a number known beforehand */
+        d[i] = quads_of(0);
     for (uint32_t i = 0; i < n; i++) {
         d[i] = quads_sub(quads_triple(position[ring->vertex[i]]), from);
         all = quads_or(all, quads_size(d[i]));
     }
-    for (uint32_t i = n; i < end; i++)
-        d[i] = quads_of(0);
     return quads_any(all);
 }
 
@@ -132,7 +132,7 @@ static void place_spokes(pmesh_star *s)
 
 /* One coordinate of the normals of LANES faces, from the others of spokes;
  * returns their sum. Behind the last face they are 0. */
-static int32_t cross(const int16_t *a, const int16_t *b, int32_t *face)
+static inline int32_t cross(const int16_t *a, const int16_t *b, int32_t *face)
 {
     const lanes x = lanes_load(a), next_x = lanes_load(a + 1);
     const lanes y = lanes_load(b), next_y = lanes_load(b + 1);
@@ -147,15 +147,16 @@ static int32_t cross(const int16_t *a, const int16_t *b, int32_t *face)
 /* The faces' normals, and their sum scaled to length 2^14. */
 static void find_normal(pmesh_star *s)
 {
-    int64_t sum[3];
+    const int16_t *x = s->spoke[0], *y = s->spoke[1], *z = s->spoke[2];
+    int64_t sum[3] = { 0, 0, 0 };
     uint64_t all = 0;
-    for (int k = 0; k < 3; k++) {
-        const int16_t *a = s->spoke[(k + 1) % 3], *b = s->spoke[(k + 2) % 3];
-        sum[k] = 0;
-        for (uint32_t i = 0; i < s->count; i += LANES)
-            sum[k] += cross(a + i, b + i, s->face[k] + i);
-        all |= (uint64_t)(sum[k] < 0 ? -sum[k] : sum[k]);
+    for (uint32_t i = 0; i < s->count; i += LANES) {
+        sum[0] += cross(y + i, z + i, s->face[0] + i);
+        sum[1] += cross(z + i, x + i, s->face[1] + i);
+        sum[2] += cross(x + i, y + i, s->face[2] + i);
     }
+    for (int k = 0; k < 3; k++)
+        all |= (uint64_t)(sum[k] < 0 ? -sum[k] : sum[k]);
     const unsigned bits = pmesh_bit_length(all);
     const unsigned drop = bits > SUM_BITS ? bits - SUM_BITS : 0;
     uint32_t square = 0;
@@ -210,15 +211,16 @@ void pmesh_star_make(pmesh_star *s, const pmesh_codec *c,
 
 /* sum / (weight x times), |sum| <= weight x 2^14 < 2^31. */
 static void centre(const int32_t sum[3], int32_t weight, int32_t times,
-                   int32_t out[3])
+                   int32_t out[QUADS])
 {
     const int64_t per =
         weight ? (UINT32_C(1) << 31) / (uint32_t)(weight * times) : 0;
     for (int k = 0; k < 3; k++)
         out[k] = (int32_t)(sum[k] * per >> 31);
+    out[3] = 0;
 }
 
-static void centre_of_spokes(const pmesh_star *s, int32_t out[3])
+static void centre_of_spokes(const pmesh_star *s, int32_t out[QUADS])
 {
     quads sum[3] = { quads_of(0), quads_of(0), quads_of(0) };
     quads weight = quads_of(0);
@@ -249,7 +251,7 @@ static quads face_lengths(const pmesh_star *s, uint32_t i)
 }
 
 /* Behind the last face all lengths are 0. */
-static void centre_of_area(const pmesh_star *s, int32_t out[3])
+static void centre_of_area(const pmesh_star *s, int32_t out[QUADS])
 {
     int32_t length[PMESH_STAR_ROOM], total[3];
     quads sum[3] = { quads_of(0), quads_of(0), quads_of(0) };
@@ -278,7 +280,8 @@ static void centre_of_area(const pmesh_star *s, int32_t out[3])
     centre(total, quads_total(weight), 3, out);
 }
 
-void pmesh_star_centres(const pmesh_star *s, int32_t area[3], int32_t spokes[3])
+void pmesh_star_centres(const pmesh_star *s, int32_t area[QUADS],
+                        int32_t spokes[QUADS])
 {
     centre_of_area(s, area);
     centre_of_spokes(s, spokes);
