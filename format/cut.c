@@ -113,6 +113,7 @@ static uint32_t gather(cutter *s, const pmesh_codec *c, uint32_t v,
     const int32_t(*position)[3] = (const int32_t(*)[3])c->mesh.position;
     const quads from = quads_triple(position[v]);
     quads all = quads_of(0);
+    uint32_t newborn[PMESH_MAX_RING];
     s->newborn = 0;
     const uint32_t end = padded(s->n);
     for (uint32_t i = end - LANES; i < end; i++) /* a number known beforehand */
@@ -121,11 +122,14 @@ static uint32_t gather(cutter *s, const pmesh_codec *c, uint32_t v,
         const uint32_t x = ring->vertex[i];
         d[i] = quads_sub(quads_triple(position[x]), from);
         all = quads_or(all, quads_size(d[i]));
-        if (c->state[x] != PMESH_NEWBORN)
-            continue;
+        newborn[s->newborn] = x;
+        s->newborn += c->state[x] == PMESH_NEWBORN;
+    }
+    for (uint32_t i = 0; i < s->newborn; i++) {
+        const int32_t *x = position[newborn[i]];
+        const int32_t *parent = position[c->mesh.parent[newborn[i]]];
         for (int k = 0; k < 3; k++)
-            drift[k] += position[x][k] - position[c->mesh.parent[x]][k];
-        s->newborn++;
+            drift[k] += x[k] - parent[k];
     }
     return quads_any(all);
 }

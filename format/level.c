@@ -24,10 +24,11 @@ static pmesh_status corrupt(pmesh_codec *c, const char *rule)
 /* The first vertices of `order` wait for their visit, or had it. */
 static void queue_vertex(pmesh_codec *c, uint32_t x)
 {
-    if (c->state[x] != PMESH_UNVISITED)
-        return;
-    c->state[x] = PMESH_UNVISITED | PMESH_QUEUED;
-    c->order[c->level_queued++] = x;
+    const uint8_t state = c->state[x];
+    const bool is_new = state == PMESH_UNVISITED; /* nobody can tell */
+    c->order[c->level_queued] = x;
+    c->level_queued += is_new;
+    c->state[x] = (uint8_t)(state | is_new * PMESH_QUEUED);
 }
 
 static void queue_ring(pmesh_codec *c, const pmesh_ring *ring)

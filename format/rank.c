@@ -172,10 +172,9 @@ static void rename_faces(pmesh_codec *c)
         const uint32_t t = m->twin[h];
         if (t == PMESH_NONE)
             continue;
-        if (t >= edge)
-            m->twin[h] = 3 * now[t / 3 - begin] + t % 3;
-        else
-            m->twin[t] = h;
+        const bool inside = t >= edge; /* as often as not */
+        const uint32_t to = 3 * now[inside ? t / 3 - begin : 0] + t % 3;
+        m->twin[inside ? h : t] = inside ? to : h;
     }
 }
 
