@@ -66,16 +66,22 @@ static bool list_open(const pmesh_mesh *m, pmesh_ring *ring)
     return true;
 }
 
-bool pmesh_ring_gather_known(const pmesh_mesh *m, uint32_t v, uint32_t count,
-                             pmesh_ring *ring)
+bool pmesh_ring_list_edges(const pmesh_mesh *m, uint32_t v, uint32_t count,
+                           pmesh_ring *ring)
 {
     const uint32_t start = m->first[v];
     ring->open = m->twin[start] == PMESH_NONE;
     ring->count = count;
     ring->face_count = count - ring->open;
     ring->edge[0] = start;
-    if (count + ring->open > PMESH_MAX_RING ||
-        !(ring->open ? list_open(m, ring) : list_closed(m, ring)))
+    return count + ring->open <= PMESH_MAX_RING &&
+           (ring->open ? list_open(m, ring) : list_closed(m, ring));
+}
+
+bool pmesh_ring_gather_known(const pmesh_mesh *m, uint32_t v, uint32_t count,
+                             pmesh_ring *ring)
+{
+    if (!pmesh_ring_list_edges(m, v, count, ring))
         return false;
     for (uint32_t i = 0; i < ring->face_count; i++)
         ring->vertex[i] = m->vertex[pmesh_next(ring->edge[i])];

@@ -107,6 +107,10 @@ bool pmesh_ring_gather(const pmesh_mesh *m, uint32_t v, pmesh_ring *ring);
 bool pmesh_ring_gather_known(const pmesh_mesh *m, uint32_t v, uint32_t count,
                              pmesh_ring *ring);
 
+/* Its half-edges alone. */
+bool pmesh_ring_list_edges(const pmesh_mesh *m, uint32_t v, uint32_t count,
+                           pmesh_ring *ring);
+
 /* The same of the fan that starts at half-edge `start`. */
 bool pmesh_ring_gather_fan(const pmesh_mesh *m, uint32_t start,
                            pmesh_ring *ring);

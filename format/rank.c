@@ -77,6 +77,21 @@ static inline void permute(void *items, uint32_t count, uint32_t *order,
         order[i] &= ~done;
 }
 
+static void rename_corners(pmesh_codec *c, uint32_t v, uint32_t name)
+{
+    pmesh_mesh *m = &c->mesh;
+    uint32_t start = m->first[v];
+    pmesh_ring ring;
+    if (!m->fan && pmesh_ring_list_edges(m, v, c->near[v].degree, &ring)) {
+        for (uint32_t i = 0; i < ring.face_count; i++)
+            m->vertex[ring.edge[i]] = name;
+        return;
+    }
+    for (uint32_t h = start; h != PMESH_NONE;
+         h = pmesh_corner_next(m, &start, h))
+        m->vertex[h] = name;
+}
+
 /* Names the children by rank in every half-edge that starts at them. */
 static void rename_children(pmesh_codec *c)
 {
@@ -85,12 +100,8 @@ static void rename_children(pmesh_codec *c)
     uint32_t *rank = c->scratch;
     for (uint32_t i = 0; i < n; i++)
         rank[c->child_order[i]] = i;
-    for (uint32_t k = 0; k < n; k++) { /* in coding order lie the faces */
-        uint32_t start = m->first[first + k];
-        for (uint32_t h = start; h != PMESH_NONE;
-             h = pmesh_corner_next(m, &start, h))
-            m->vertex[h] = first + rank[k];
-    }
+    for (uint32_t k = 0; k < n; k++) /* in coding order lie the faces */
+        rename_corners(c, first + k, first + rank[k]);
     permute(m->first + first, n, c->child_order, sizeof *m->first);
     permute(m->parent + first, n, c->child_order, sizeof *m->parent);
     permute(c->near + first, n, c->child_order, sizeof *c->near);
