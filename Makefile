@@ -198,7 +198,8 @@ check-symbols: $(libs)
 
 ## check-cross: the same results on other compilers and machines (tests/cross)
 check-cross: cross-deps
-	@tests/cross/all.sh build/cross
+	+@$(submake) $(corrupt)
+	@CORRUPT=$(corrupt) tests/cross/all.sh build/cross
 
 ## check-web: the npm package in node, the viewer in a browser (tests/web)
 check-web: web-deps
@@ -239,6 +240,13 @@ fuzz msan: fuzz-deps
 	+@$(submake) $(B)/pmesh
 	+@$(submake) config=$@ CC=clang CXX=clang++ build/$@/fuzz/$(fuzz_target)
 	@PMESH=$(B)/pmesh tests/fuzz/fuzz.sh build/$@/fuzz/$(fuzz_target) \
+	  $(or $(TIME),60)
+## afl: the same by AFL++, without sanitizers and mended checksums, T=, TIME=
+afl: afl-deps
+	+@$(submake) $(B)/pmesh
+	+@$(submake) B=build/afl CC=afl-clang-fast CXX=afl-clang-fast++ \
+	  build/afl/fuzz/$(fuzz_target)
+	@PMESH=$(B)/pmesh tests/fuzz/afl.sh build/afl/fuzz/$(fuzz_target) \
 	  $(or $(TIME),60)
 fuzz_target = $(or $(T),$(error T=NAME says what to fuzz: $(targets)))
 
@@ -305,6 +313,9 @@ web-deps:
 ## fuzz-deps: those that `make fuzz`, `msan` and `coverage` need
 fuzz-deps:
 	@tests/install-deps.sh build fuzz
+## afl-deps: those that `make afl` needs
+afl-deps:
+	@tests/install-deps.sh build afl
 ## cross-deps: those that `make check-cross` needs
 cross-deps:
 	@tests/install-deps.sh cross
@@ -360,7 +371,7 @@ help:
 	@sed -n 's/^## //p' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: all demo test check unit single web viewer check-deps check-headers check-symbols bench
-.PHONY: fuzz msan fuzz-replay coverage fuzz-deps
+.PHONY: fuzz msan afl fuzz-replay coverage fuzz-deps afl-deps
 .PHONY: check-cross check-reference check-gltf golden deps bench-deps cross-deps web-deps
 .PHONY: check-web check-damage check-faults install
 .PHONY: uninstall clean help FORCE

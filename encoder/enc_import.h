@@ -13,6 +13,7 @@
 #ifndef ENC_IMPORT_H
 #define ENC_IMPORT_H
 
+#include "encoder/enc_bits.h"
 #include "encoder/enc_mesh.h"
 
 #include <float.h>
@@ -53,22 +54,6 @@ static inline void enc_load_position(const pmesh_mesh_input *in,
         else if (out[k] >= -FLT_MAX && out[k] <= FLT_MAX)
             out[k] = (double)(float)out[k];
     }
-}
-
-/* Sets of small integers. */
-static inline size_t enc_bit_words(size_t count)
-{
-    return (count + 31) / 32;
-}
-
-static inline bool enc_bit_get(const uint32_t *set, size_t i)
-{
-    return set[i / 32] >> (i % 32) & 1;
-}
-
-static inline void enc_bit_put(uint32_t *set, size_t i)
-{
-    set[i / 32] |= UINT32_C(1) << (i % 32);
 }
 
 /* A well-mixed hash of `word` on top of `hash`. */

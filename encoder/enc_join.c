@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "encoder/enc_bits.h"
 #include "encoder/enc_schedule.h"
 #include "format/layout.h"
 
@@ -341,8 +342,7 @@ static void remove_pair(enc_surface *s, const uint32_t edge[2])
     *at = s->fan[*at];
     s->degree[wing] -= 2;
     for (int i = 0; i < 2; i++)
-        for (uint32_t k = 0; k < 3; k++)
-            s->vertex[edge[i] / 3 * 3 + k] = ENC_NONE;
+        enc_surface_bury_face(s, edge[i] / 3);
     s->face_count -= 2;
 }
 
@@ -362,6 +362,7 @@ void enc_join_contract(enc_surface *s, uint32_t child, uint32_t parent,
         if (s->wedge && s->vertex[h] == child)
             s->wedge[h] = wedge_parent[s->wedge[h]];
         s->vertex[h] = parent;
+        enc_bit_put(s->changed, h / 3);
     }
     if (link->pair != ENC_NONE)
         remove_pair(s, link->edge + link->pair);

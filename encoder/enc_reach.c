@@ -5,11 +5,16 @@
 #include <math.h>
 #include <string.h>
 
+#include "encoder/enc_bits.h"
 #include "encoder/enc_distance.h"
 #include "format/alloc.h"
 
 /* One of so many vertices goes first, so that the others soon have enough. */
 enum { PIONEERS = 61 };
+
+/* Beside a half-edge that was inherited: nobody looked at its face yet. Numbers
+ * of half-edges stay below 2^30 (ENC_MAX_CORNERS). */
+#define HEIR UINT32_C(0x40000000)
 
 /* ---- the surface that is searched ---- */
 
@@ -24,10 +29,12 @@ static bool create_copy(const enc_mesh *mesh, enc_surface *copy)
     copy->twin = pmesh_alloc(a, corners, sizeof *copy->twin);
     copy->first = pmesh_alloc(a, n, sizeof *copy->first);
     copy->position = pmesh_alloc(a, n, sizeof *copy->position);
+    copy->changed = pmesh_alloc(a, enc_bit_words(mesh->face_count),
+                                sizeof *copy->changed);
     if (mesh->joined)
         copy->fan = pmesh_alloc(a, corners, sizeof *copy->fan);
     return copy->vertex && copy->twin && copy->first && copy->position &&
-           (copy->fan || !mesh->joined);
+           copy->changed && (copy->fan || !mesh->joined);
 }
 
 static void copy_block(void *user, uint32_t part, unsigned worker)
@@ -78,7 +85,7 @@ pmesh_status enc_reach_create(const enc_mesh *mesh, bool later, enc_reach *out)
         return PMESH_E_MEMORY;
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        out->beside[v] = v;
+        out->beside[v] = ENC_AT_VERTEX | v;
     return PMESH_OK;
 }
 
@@ -102,7 +109,7 @@ typedef struct search {
     const enc_surface *surface;
     double x[3], enough;
     double least, before; /* squares: the least so far, and the one before */
-    uint32_t face;        /* that is so close */
+    uint32_t edge;        /* of the face that is so close */
 } search;
 
 static void to_doubles(const int32_t p[3], double out[3])
@@ -121,7 +128,7 @@ static double from_face(const enc_surface *s, uint32_t face, const double x[3])
 }
 
 /* Looks for a face around v that is closer, until one is close enough; true if
- * there is one. */
+ * there is one, whose half-edge that leaves v is `edge` then. */
 static bool look_around(search *look, uint32_t v)
 {
     const enc_surface *s = look->surface;
@@ -134,45 +141,52 @@ static bool look_around(search *look, uint32_t v)
         if (square < look->least) {
             look->before = look->least;
             look->least = square;
-            look->face = h / 3;
+            look->edge = h;
             found = true;
         }
     }
     return found;
 }
 
-/* From the faces around v to closer ones around their corners, and so on.
- * Returns a corner of the last one. */
-static uint32_t look_for(search *look, uint32_t v)
+/* From the faces around v to closer ones around their corners, and so on. */
+static void look_for(search *look, uint32_t v)
 {
     bool closer = look_around(look, v);
 
     while (closer && look->least > look->enough) {
-        const uint32_t *corner = &look->surface->vertex[3 * look->face];
-        const uint32_t from = v, last = look->face;
+        const uint32_t last = look->edge, first = last - last % 3;
+        const uint32_t from = look->surface->vertex[last];
         closer = false;
-        for (int k = 0; k < 3 && look->face == last; k++)
-            if (corner[k] != from && look_around(look, corner[k])) {
-                v = corner[k];
-                closer = true;
-            }
+        for (uint32_t h = first; h < first + 3 && look->edge == last; h++) {
+            const uint32_t corner = look->surface->vertex[h];
+            closer = corner != from && look_around(look, corner);
+        }
     }
-    return v;
 }
 
-/* From the vertex that is beside it; where it is then is returned. */
+/* From what is beside it; what is so then is returned. As long as a face around
+ * a vertex is close enough, it does not matter which. */
 static uint32_t look_from(const enc_reach *r, uint32_t vertex, search *look)
 {
-    const uint32_t v = r->beside[vertex];
+    const enc_surface *s = r->from;
+    uint32_t h = r->beside[vertex];
 
-    *look = (search){ .surface = r->from, .enough = r->most,
-                      .least = INFINITY, .before = INFINITY };
-    if (r->from->first[v] == ENC_NONE) {
-        look->least = 0;
-        return v;
-    }
+    *look = (search){ .surface = s, .enough = r->most, .before = INFINITY };
+    if (h & ENC_AT_VERTEX)
+        h = s->first[h & ~ENC_AT_VERTEX];
+    else if (h & HEIR)
+        h -= HEIR;
+    else if (!enc_bit_get(s->changed, h / 3))
+        return h;
+    if (h == ENC_NONE)
+        return r->beside[vertex];
     to_doubles(r->mesh->position[vertex], look->x);
-    return look_for(look, v);
+    look->least = from_face(s, h / 3, look->x);
+    if (look->least <= look->enough)
+        return h;
+    look->least = INFINITY;
+    look_for(look, s->vertex[h]);
+    return look->edge;
 }
 
 static void reach_from(enc_reach *r, uint32_t vertex)
@@ -209,18 +223,34 @@ typedef struct descent {
     const enc_schedule *made;
 } descent;
 
-/* From what was beside a vertex to what this has become. */
+static uint32_t survivor(const enc_schedule *made, uint32_t v)
+{
+    while (made->vertex_end[v] != ENC_NONE)
+        v = made->contraction[made->vertex_end[v]].parent;
+    return v;
+}
+
+/* From what was beside a vertex to what this has become; a half-edge that is
+ * alive leaves that already. */
 static void descend_block(void *user, uint32_t part, unsigned worker)
 {
     const descent *d = user;
     const enc_schedule *made = d->made;
+    const enc_surface *s = d->reach->from;
     uint32_t *beside = d->reach->beside;
     const uint32_t end = enc_block_end(d->reach->mesh, part);
 
     (void)worker;
-    for (uint32_t v = part * ENC_BLOCK; v < end; v++)
-        while (made->vertex_end[beside[v]] != ENC_NONE)
-            beside[v] = made->contraction[made->vertex_end[beside[v]]].parent;
+    for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
+        uint32_t h = beside[v];
+        while (!(h & ENC_AT_VERTEX) && s->vertex[h] == ENC_NONE)
+            h = s->twin[h];
+        if (h & ENC_AT_VERTEX)
+            h = ENC_AT_VERTEX | survivor(made, h & ~ENC_AT_VERTEX);
+        else if (h != beside[v])
+            h |= HEIR;
+        beside[v] = h;
+    }
 }
 
 static enc_pool *pool_of(const enc_reach *r)
@@ -236,6 +266,11 @@ static void start(enc_reach *r, const enc_surface *s, const enc_schedule *made)
     enc_pool_run(pool_of(r), enc_blocks(r->mesh), descend_block, &d);
     for (uint32_t v = 0; v < r->mesh->vertex_count; v += PIONEERS)
         reach_from(r, v);
+}
+
+static size_t changed_size(const enc_reach *r)
+{
+    return enc_bit_words(r->mesh->face_count) * sizeof *r->from->changed;
 }
 
 static double settle(enc_reach *r)
@@ -255,7 +290,9 @@ double enc_reach_bound(enc_reach *r, const enc_surface *s,
     start(r, s, made);
     if (r->guess)
         enc_pool_run(pool_of(r), enc_blocks(r->mesh), guess_block, r);
-    return settle(r);
+    const double bound = settle(r);
+    memset(s->changed, 0, changed_size(r));
+    return bound;
 }
 
 void enc_reach_begin(enc_reach *r, const enc_surface *s,
@@ -263,6 +300,8 @@ void enc_reach_begin(enc_reach *r, const enc_surface *s,
 {
     start(r, s, made);
     enc_pool_run(pool_of(r), copy_parts(r->mesh), copy_block, r);
+    memcpy(r->copy.changed, s->changed, changed_size(r));
+    memset(s->changed, 0, changed_size(r));
     r->from = &r->copy;
     enc_pool_begin(pool_of(r), enc_blocks(r->mesh), guess_block, r);
 }

@@ -10,7 +10,9 @@
  * nearest face is not to be reached that way.
  *
  * A vertex need not look on once it is closer than another one, or than the
- * bound of the level before: bounds shall not fall. So most look at few faces.
+ * bound of the level before: bounds shall not fall. So it is kept with the face
+ * that was close enough, which still is if it has not changed, and mostly is if
+ * it has: few look at more than one face.
  *
  * In a joined mesh, vertices of pieces that have vanished do not count.
  *
@@ -32,7 +34,8 @@ typedef struct enc_guess {
 
 typedef struct enc_reach {
     const enc_mesh *mesh;
-    uint32_t *beside; /* per vertex of the full mesh: one of the level */
+    uint32_t *beside; /* per vertex of the full mesh: a half-edge that leaves
+                         one of the level, or ENC_AT_VERTEX and that one */
     enc_guess *guess; /* per vertex; NULL without helpers */
     bool later;       /* enc_reach_begin() may be called */
     enc_surface copy; /* then: of the surface */

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "encoder/enc_bits.h"
 #include "encoder/enc_schedule.h"
 #include "format/alloc.h"
 
@@ -89,9 +90,12 @@ pmesh_status enc_surface_create(const enc_mesh *mesh, enc_surface *out)
     s.degree = pmesh_alloc(a, n, sizeof *s.degree);
     s.position = pmesh_alloc(a, n, sizeof *s.position);
     s.mark = pmesh_alloc_zero(a, n, sizeof *s.mark);
+    s.changed = pmesh_alloc_zero(a, enc_bit_words(mesh->face_count),
+                                 sizeof *s.changed);
     *out = s;
     if (!s.vertex || !s.twin || (mesh->wedge && !s.wedge) || !s.first ||
-        !s.degree || !s.position || !s.mark || (mesh->joined && !s.fan)) {
+        !s.degree || !s.position || !s.mark || !s.changed ||
+        (mesh->joined && !s.fan)) {
         enc_surface_destroy(out);
         return PMESH_E_MEMORY;
     }
@@ -125,6 +129,8 @@ void enc_surface_destroy(enc_surface *s)
     pmesh_release(a, s->degree, n, sizeof *s->degree);
     pmesh_release(a, s->position, n, sizeof *s->position);
     pmesh_release(a, s->mark, n, sizeof *s->mark);
+    pmesh_release(a, s->changed, enc_bit_words(mesh->face_count),
+                  sizeof *s->changed);
     *s = (enc_surface){ 0 };
 }
 
@@ -249,6 +255,19 @@ static void restart(enc_surface *s, uint32_t wing, uint32_t old, uint32_t now)
     *at = s->fan && now == ENC_NONE ? s->fan[old] : now;
 }
 
+/* h is dead; `heir`, in a face beside it, has the same start. */
+static void bury(enc_surface *s, uint32_t h, uint32_t heir)
+{
+    s->twin[h] = heir != ENC_NONE ? heir : ENC_AT_VERTEX | s->vertex[h];
+    s->vertex[h] = ENC_NONE;
+}
+
+void enc_surface_bury_face(enc_surface *s, uint32_t face)
+{
+    for (uint32_t h = 3 * face; h < 3 * face + 3; h++)
+        bury(s, h, ENC_NONE);
+}
+
 void enc_surface_remove_face(enc_surface *s, uint32_t h)
 {
     const uint32_t next = enc_next(h), prev = enc_prev(h);
@@ -261,7 +280,9 @@ void enc_surface_remove_face(enc_surface *s, uint32_t h)
         s->twin[out] = in;
     restart(s, wing, prev, in);
     s->degree[wing] -= in == ENC_NONE && out == ENC_NONE ? 3 : 1;
-    s->vertex[h] = s->vertex[next] = s->vertex[prev] = ENC_NONE;
+    bury(s, h, out);
+    bury(s, next, out);
+    bury(s, prev, in);
     s->face_count--;
 }
 
@@ -282,15 +303,25 @@ static uint32_t merged_first(const enc_surface *s, const enc_pair *pair)
     return first == enc_next(left) ? s->twin[enc_prev(left)] : first;
 }
 
+void enc_surface_change_star(enc_surface *s, uint32_t v)
+{
+    uint32_t start = s->first[v];
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
+        enc_bit_put(s->changed, h / 3);
+}
+
 void enc_surface_contract(enc_surface *s, const enc_pair *pair,
                           const int32_t place[3], const uint32_t *wedge_parent)
 {
     const uint32_t u = pair->child, v = pair->parent;
     const uint32_t first = merged_first(s, pair);
 
+    if (memcmp(s->position[v], place, sizeof s->position[0]) != 0)
+        enc_surface_change_star(s, v);
     uint32_t h = s->first[u];
     do {
         s->vertex[h] = v;
+        enc_bit_put(s->changed, h / 3);
         if (s->wedge)
             s->wedge[h] = wedge_parent[s->wedge[h]];
         h = enc_turn(s, h);

@@ -19,10 +19,15 @@
 
 #include "encoder/enc_mesh.h"
 
+/* Instead of a half-edge: this and the number of a vertex. Half-edges are fewer
+ * than 2^31. */
+#define ENC_AT_VERTEX UINT32_C(0x80000000)
+
 typedef struct enc_surface {
     const enc_mesh *mesh;
     uint32_t *vertex; /* per half-edge: its start; ENC_NONE in dead faces */
-    uint32_t *twin;   /* per half-edge */
+    uint32_t *twin;   /* per half-edge; in dead faces its heir, one with the same
+                         start, or ENC_AT_VERTEX and that vertex */
     uint32_t *wedge;  /* per corner, NULL without attributes */
     uint32_t *first;  /* per vertex: a half-edge that leaves it, at a boundary
                          the one without twin; ENC_NONE if it is dead */
@@ -30,6 +35,8 @@ typedef struct enc_surface {
                          the vertex starts, or ENC_NONE; NULL unless joined */
     uint32_t *degree; /* per vertex: members of its rings, ghosts included */
     int32_t (*position)[3];
+    uint32_t *changed; /* bit per face: a corner of it has moved or become
+                          another vertex; enc_reach.h clears them */
     uint32_t vertex_count, face_count; /* alive */
     uint32_t *mark; /* per vertex: scratch of enc_surface_mark_ring() */
     uint32_t stamp;
@@ -139,6 +146,9 @@ bool enc_surface_can_join(const enc_surface *s, uint32_t h);
 uint32_t enc_surface_fan_faces(const enc_surface *s, uint32_t corner,
                                bool *open);
 
+/* Marks a face as dead, without heirs. */
+void enc_surface_bury_face(enc_surface *s, uint32_t face);
+
 /* Removes the face of h, gluing its two other sides together; the wing loses
  * its fan there if that was the only face of it. */
 void enc_surface_remove_face(enc_surface *s, uint32_t h);
@@ -147,6 +157,9 @@ void enc_surface_remove_face(enc_surface *s, uint32_t h);
  * ends moved to `place`. Faces that have no area already are free. */
 bool enc_surface_flips(const enc_surface *s, const enc_pair *pair,
                        const int32_t place[3]);
+
+/* Notes that the faces around v have changed. */
+void enc_surface_change_star(enc_surface *s, uint32_t v);
 
 /*
  * Contracts the pair, which must be one that can be joined; the parent moves

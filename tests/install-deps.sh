@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Usage: tests/install-deps.sh [--check] GROUP...
-# of the groups build, test, bench, cross, fuzz and web.
+# of the groups build, test, bench, cross, fuzz, afl and web.
 #
 # Installs the Debian packages of what is missing, by apt-get as root or
 # through sudo. If nothing is missing it does nothing, offline too. --check
@@ -79,6 +79,10 @@ group_fuzz() {
     need libclang-rt-dev links clang -fsanitize=address
     need llvm program llvm-cov
     need python3 program python3
+}
+
+group_afl() {
+    need afl++ program afl-clang-fast
 }
 
 group_web() {

@@ -1,11 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# Usage: tests/cross/all.sh BUILD_DIR [TARGET...]
+# Usage: CORRUPT=build/release/corrupt tests/cross/all.sh BUILD_DIR [TARGET...]
 #
 # Builds the decoder and the encoder with other compilers, optimisations and
 # for other machines (qemu-user, WebAssembly in node), and compares:
 #
 #   decoder   hashes of all golden files with tests/golden/hashes.txt
+#   verdicts  what it says of bad files, those of tests/corrupt and of fuzzing,
+#             and shows of them, with what the first target says
 #   encoder   the golden files made anew, with 1 and with 2 threads, with those
 #             that the first target makes
 #
@@ -55,6 +57,14 @@ decodes() {
         $run "$dir/golden_decode" $golden/*.pmesh >"$dir/hashes.txt"
 }
 
+# Half of the files of fuzzing are good ones. A crash shows as a file that comes
+# last: `end` does not follow.
+judges() {
+    $run "$dir/golden_decode" "$out"/bad/*.pmesh tests/fuzz/corpus/dec_*/* \
+        >"$dir/verdicts.txt"
+    [ $? = 1 ] && echo end >>"$dir/verdicts.txt"
+}
+
 bakes() {
     # shellcheck disable=SC2086
     build "$dir/golden_bake" "$encoder" "$@" $encoder_only || return 1
@@ -82,6 +92,14 @@ target() {
     fi
     verdict "$is" "$expected"
     line=$(printf '%-22s %-12s %-7s' "$name" "$is" "$word")
+    if judges 2>>"$dir/log"; then
+        is=$(hash_of "$dir/verdicts.txt")
+    else
+        is="no result"
+    fi
+    : "${verdicts:=$is}"
+    verdict "$is" "$verdicts"
+    line=$(printf '%s   %-12s %-7s' "$line" "$is" "$word")
     if bakes "$@" >>"$dir/log" 2>&1; then
         is=$(hash_of "$dir"/j1/*)/$(hash_of "$dir"/j2/*)
     else
@@ -110,10 +128,15 @@ x87_is_refused() {
     printf '%-22s %s\n' "i686 x87" "$is"
 }
 
+rm -rf "$out/bad"
+mkdir -p "$out/bad"
+"$CORRUPT" "$out/bad" >/dev/null || exit 1
 expected=$(hash_of $golden/hashes.txt)
+verdicts=
 files=
 encoder_only=
-printf '%-22s %-20s   %s\n' target "decoder's hashes" "encoder's files"
+printf '%-22s %-20s   %-20s   %s\n' target "decoder's hashes" verdicts \
+    "encoder's files"
 target gcc-O2 "" gcc -O2
 target gcc-O0 "" gcc -O0
 target gcc-O3-native "" gcc -O3 -march=native

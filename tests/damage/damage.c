@@ -5,8 +5,9 @@
  * bits so many, evenly spread (0: all). Promised, and counted:
  *
  *   a flipped bit is noticed; a prefix asks for more
- *   what is shown then is what the good file shows at as many faces, no more
- *   of it than before the damage, and never less for a longer prefix
+ *   what is shown then is what the good file shows at as many vertices (levels
+ *   of scattered faces have many states of as many faces), no more of it than
+ *   before the damage, and never fewer faces for a longer prefix
  *
  * Prints a line per file and the sums; fails if a promise was broken.
  */
@@ -24,13 +25,13 @@ typedef struct tally {
     uint64_t first; /* the shortest prefix that shows a mesh */
 } tally;
 
-/* A good file, and a hash of what it shows at each number of faces. */
+/* A good file, and a hash of what it shows at each number of mesh vertices. */
 typedef struct good {
     const char *name;
     uint8_t *data;
     size_t size;
     uint64_t *hash; /* 0: never shown */
-    uint32_t faces;
+    uint32_t vertices;
 } good;
 
 static void complain(const good *g, tally *t, const char *what, uint64_t where)
@@ -41,36 +42,32 @@ static void complain(const good *g, tally *t, const char *what, uint64_t where)
 
 /* ---- single meshes ------------------------------------------------------ */
 
-/* The faces of what is shown, refined as far as it goes; 0: nothing. */
-static uint32_t show(pmesh_decoder *dec, uint64_t *hash)
+/* What is shown, refined as far as it goes; without faces: nothing. */
+static pmesh_view show(pmesh_decoder *dec)
 {
     pmesh_view v;
     if (pmesh_decoder_refine(dec, NULL, NULL) != PMESH_OK ||
         pmesh_decoder_mesh(dec, &v) != PMESH_OK || !shape_view_sound(dec))
-        return 0;
-    *hash = shape_view_hash(dec);
-    return v.face_count;
+        v = (pmesh_view){ 0 };
+    return v;
 }
 
-/* Walks down from the full mesh, so that each number is met that can be. */
-static bool look_at_levels(good *g)
+/* Walks up from the base mesh, a split at a time. */
+static bool look_at_states(good *g)
 {
     pmesh_status status;
     pmesh_decoder *dec = shape_decode(g->data, g->size, g->size, &status);
-    pmesh_view v;
-    bool fine = status == PMESH_OK &&
-                pmesh_decoder_refine(dec, NULL, NULL) == PMESH_OK &&
-                pmesh_decoder_mesh(dec, &v) == PMESH_OK;
-    g->faces = fine ? v.face_count : 0;
-    g->hash = calloc((size_t)g->faces + 1, sizeof *g->hash);
-    for (uint32_t n = g->faces; fine && n > 0; n--) {
-        const pmesh_target target = { .faces = n };
-        pmesh_decoder_refine(dec, &target, NULL);
-        pmesh_decoder_mesh(dec, &v);
-        fine = v.face_count <= g->faces;
-        if (fine && g->hash[v.face_count] == 0)
-            g->hash[v.face_count] = shape_view_hash(dec);
-        n = n > v.face_count ? v.face_count : n;
+    pmesh_view v = show(dec);
+    const pmesh_target base = { .faces = 1 }, next = { .max_ops = 1 };
+    bool fine = status == PMESH_OK && v.face_count > 0;
+    g->vertices = v.mesh_vertex_count;
+    g->hash = calloc((size_t)g->vertices + 1, sizeof *g->hash);
+    fine = fine && g->hash && pmesh_decoder_refine(dec, &base, NULL) == PMESH_OK;
+    for (uint32_t n = 0; fine && n < g->vertices; n = v.mesh_vertex_count) {
+        fine = pmesh_decoder_mesh(dec, &v) == PMESH_OK &&
+               (n == 0 || v.mesh_vertex_count == n + 1);
+        g->hash[v.mesh_vertex_count] = shape_view_hash(dec);
+        pmesh_decoder_refine(dec, &next, NULL);
     }
     pmesh_decoder_destroy(dec);
     return fine;
@@ -81,15 +78,16 @@ static uint32_t try_mesh(const good *g, size_t size, tally *t, uint64_t where,
                          const char *what)
 {
     pmesh_status status;
-    uint64_t hash = 0;
     pmesh_decoder *dec = shape_decode(g->data, size, size, &status);
-    const uint32_t faces = show(dec, &hash);
+    const pmesh_view v = show(dec);
     if (status == PMESH_OK)
         complain(g, t, what, where);
-    if (faces > 0 && (faces > g->faces || g->hash[faces] != hash))
+    if (v.face_count > 0 && (v.mesh_vertex_count > g->vertices ||
+                             g->hash[v.mesh_vertex_count] !=
+                                 shape_view_hash(dec)))
         complain(g, t, "a mesh that the file does not hold", where);
     pmesh_decoder_destroy(dec);
-    return faces;
+    return v.face_count;
 }
 
 static void cut_everywhere(const good *g, tally *t)
@@ -178,7 +176,7 @@ static bool read_file(const char *path, good *g)
     g->size = fread(g->data, 1, room, in);
     fclose(in);
     return g->size > 0 && (is_scene(g) ? feed_scene(g, g->size) == PMESH_OK
-                                       : look_at_levels(g));
+                                       : look_at_states(g));
 }
 
 static void print(const char *name, const tally *t)

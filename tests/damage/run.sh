@@ -59,7 +59,7 @@ if [ -n "${LONG-}" ]; then
     try 'small files, all bits' tell 0 $small
     cat "$dir/told"
     # shellcheck disable=SC2086
-    try 'larger files, 10,000 bits each' tell 10000 $large
+    try 'larger files, 20,000 bits each' tell 20000 $large
     cat "$dir/told"
     echo "$flips bits flipped"
     try '500,000 flips' test "$flips" -ge 500000

@@ -22,6 +22,24 @@ size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t max_size);
 size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max_size,
                                unsigned seed);
 
+/* libFuzzer is built without MSan, which takes its words for never written. */
+#if defined(__has_feature)
+#if __has_feature(memory_sanitizer)
+#include <sanitizer/msan_interface.h>
+#define WRITTEN(data, size) __msan_unpoison(data, size)
+#endif
+#endif
+#ifndef WRITTEN
+#define WRITTEN(data, size) ((void)(data))
+#endif
+
+static size_t mutate(uint8_t *data, size_t size, size_t max_size)
+{
+    const size_t made = LLVMFuzzerMutate(data, size, max_size);
+    WRITTEN(data, made);
+    return made;
+}
+
 /* ---- chunks ------------------------------------------------------------- */
 
 /* A copy of its bytes, changed; to free. */
@@ -32,7 +50,7 @@ static uint8_t *change(piece *p)
         return NULL;
     if (p->size > 0)
         memcpy(copy, p->data, p->size);
-    p->size = LLVMFuzzerMutate(copy, p->size, p->size + SPARE);
+    p->size = mutate(copy, p->size, p->size + SPARE);
     p->data = copy;
     return copy;
 }
@@ -148,7 +166,7 @@ static size_t change_document(scene *s, uint8_t *data, size_t size)
         s->head.document_form = PMESH_DOCUMENT_PLAIN;
     }
     free(text);
-    return LLVMFuzzerMutate(data, size, size + SPARE);
+    return mutate(data, size, size + SPARE);
 }
 
 /* Puts the part's new bytes and the header that tells their size in place;
@@ -224,7 +242,7 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max_size,
     pieces p;
     if (fuzz_draw(&dice, 16) == 0 || !pieces_take_apart(data, size, &p) ||
         p.count == 0)
-        return LLVMFuzzerMutate(data, size, max_size);
+        return mutate(data, size, max_size);
     uint8_t *changed = change_something(&p, &dice, max_size);
     uint8_t *out = malloc(max_size);
     const size_t made =
@@ -234,5 +252,5 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t max_size,
         memcpy(data, out, made);
     free(out);
     free(changed);
-    return made > 0 ? made : LLVMFuzzerMutate(data, size, max_size);
+    return made > 0 ? made : mutate(data, size, max_size);
 }

@@ -2,7 +2,8 @@
 /*
  * golden_decode FILE... - prints hashes of all that the decoder tells about
  * each file, in a few states of refinement. Equal text means equal results, to
- * the last bit of the last float.
+ * the last bit of the last float. Of a bad file it prints what is shown before
+ * and after the failure, and the verdict; then the exit code is 1.
  *
  * Needs the decoder and stdio only, so that it runs wherever a C compiler
  * reaches. Numbers are hashed byte by byte, least significant first: the order
@@ -193,6 +194,16 @@ static void print_state(const pmesh_decoder *dec, const char *name,
     printf("\n");
 }
 
+/* Where and why a file is refused; or it only ends too early. */
+static void print_verdict(pmesh_status status, pmesh_decode_error error)
+{
+    if (status < 0)
+        printf("  refused: %s, byte %" PRIu64 ": %s\n",
+               pmesh_status_text(status), error.offset, error.rule);
+    else
+        printf("  incomplete\n");
+}
+
 /* ---- the walk ---------------------------------------------------------- */
 
 static void move(pmesh_decoder *dec, const char *name,
@@ -239,11 +250,13 @@ static pmesh_status print_states(pmesh_decoder *dec, const uint8_t *data,
     status = pmesh_decoder_feed(dec, data + at, size - at);
     if (status == PMESH_OK)
         walk(dec, file, room);
+    else
+        move(dec, "good", file, (pmesh_target){ 0 }, room);
     free(room);
     return status;
 }
 
-static void print_file(const pmesh_decoder *dec, size_t size,
+static void print_whole(const pmesh_decoder *dec, size_t size,
                        const pmesh_header *file)
 {
     printf("  file  %5zu bytes content %016" PRIx64 " header %016" PRIx64, size,
@@ -262,9 +275,9 @@ static pmesh_status print_hashes(const uint8_t *data, size_t size)
         return status;
     status = print_states(dec, data, size, &file);
     if (status == PMESH_OK)
-        print_file(dec, size, &file);
+        print_whole(dec, size, &file);
     else
-        fprintf(stderr, "%s\n", pmesh_decoder_error(dec).rule);
+        print_verdict(status, pmesh_decoder_error(dec));
     pmesh_decoder_destroy(dec);
     return status;
 }
@@ -353,21 +366,30 @@ static pmesh_status print_scene_hashes(const uint8_t *data, size_t size)
         move_scene(s, "bytes", (pmesh_scene_target){ .bytes = some->bytes });
         print_scene(s, size);
     } else {
-        fprintf(stderr, "%s\n", pmesh_scene_error(s).rule);
+        move_scene(s, "good", (pmesh_scene_target){ 0 });
+        print_verdict(status, pmesh_scene_error(s));
     }
     pmesh_scene_destroy(s);
     return status;
 }
 
-/* The bytes of a golden file, all of which are small; 0 if it is none. */
-static size_t read_file(const char *path, uint8_t *data, size_t capacity)
+static pmesh_status print_file(const uint8_t *data, size_t size)
+{
+    return pmesh_scene_probe(data, size) == PMESH_OK
+               ? print_scene_hashes(data, size)
+               : print_hashes(data, size);
+}
+
+/* The bytes of a file, all of which are small. */
+static int read_file(const char *path, uint8_t *data, size_t capacity,
+                     size_t *size)
 {
     FILE *in = fopen(path, "rb");
     if (!in)
         return 0;
-    const size_t size = fread(data, 1, capacity, in);
+    *size = fread(data, 1, capacity, in);
     fclose(in);
-    return size < capacity ? size : 0;
+    return *size < capacity;
 }
 
 int main(int argc, char **argv)
@@ -379,16 +401,11 @@ int main(int argc, char **argv)
     for (int i = 1; i < argc; i++) {
         const char *slash = strrchr(argv[i], '/');
         printf("%s\n", slash ? slash + 1 : argv[i]);
-        const size_t size = read_file(argv[i], data, sizeof data);
-        const pmesh_status status =
-            size == 0                                   ? PMESH_E_ARGUMENT
-            : pmesh_scene_probe(data, size) == PMESH_OK
-                ? print_scene_hashes(data, size)
-                : print_hashes(data, size);
-        if (status != PMESH_OK) {
-            fprintf(stderr, "%s: %s\n", argv[i],
-                    size ? pmesh_status_text(status)
-                         : "cannot be read, or is too long");
+        size_t size;
+        if (!read_file(argv[i], data, sizeof data, &size)) {
+            fprintf(stderr, "%s: cannot be read, or is too long\n", argv[i]);
+            bad = 1;
+        } else if (print_file(data, size) != PMESH_OK) {
             bad = 1;
         }
     }
