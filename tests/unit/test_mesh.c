@@ -2,6 +2,7 @@
 #include "format/mesh.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "tests/unit/random_cut.h"
 #include "tests/unit/shapes.h"
