@@ -31,10 +31,32 @@ static void queue_vertex(pmesh_codec *c, uint32_t x)
     c->state[x] = (uint8_t)(state | is_new * PMESH_QUEUED);
 }
 
-static void queue_ring(pmesh_codec *c, const pmesh_ring *ring)
+/* How many neighbours there are of each state: counts of 12 bits, more than
+ * rings ever need, in a register, as they are wanted at once. */
+enum { COUNT_BITS = 12 };
+
+static uint64_t count_one(const pmesh_codec *c, uint32_t x)
 {
-    for (uint32_t i = 0; i < ring->count; i++)
-        queue_vertex(c, ring->vertex[i]);
+    return UINT64_C(1) << COUNT_BITS * pmesh_state(c, x);
+}
+
+static uint32_t counted(uint64_t counts, pmesh_visit state)
+{
+    return (uint32_t)(counts >> COUNT_BITS * state) & ((1u << COUNT_BITS) - 1);
+}
+
+/* Queues a ring and counts it. */
+static uint64_t queue_ring(pmesh_codec *c, const pmesh_ring *ring)
+{
+    uint64_t counts = 0;
+    for (uint32_t i = 0; i < ring->count; i++) {
+        const uint32_t x = ring->vertex[i];
+        counts += count_one(c, x);
+        queue_vertex(c, x);
+        pmesh_prefetch(&c->mesh.position[x]); /* a cut will want both */
+        pmesh_prefetch(&c->near[x]);
+    }
+    return counts;
 }
 
 /* The members of v's rings, of any size. */
@@ -95,20 +117,15 @@ static uint32_t at_most(uint32_t value, uint32_t limit)
     return value < limit ? value : limit;
 }
 
-/* Whether v splits is likely told by which of its neighbours did. */
-static uint32_t flag_context(const pmesh_codec *c, const pmesh_ring *ring,
-                             uint32_t rings)
+/* Whether v splits is likely told by which of its neighbours did; `size`: how
+ * many there are, and ghosts. */
+static uint32_t flag_context(uint64_t seen, uint32_t size)
 {
-    uint32_t seen[PMESH_GHOST + 1] = { 0 }, size = 0;
-    for (uint32_t k = 0; k < rings; k++) {
-        for (uint32_t i = 0; i < ring[k].count; i++)
-            seen[pmesh_state(c, ring[k].vertex[i])]++;
-        size += ring[k].count + ring[k].open;
-    }
     const uint32_t valence = size < 4 ? 0 : at_most(size - 3, 7);
-    const uint32_t split = at_most(seen[PMESH_PARENT] + seen[PMESH_NEWBORN], 5);
-    const uint32_t kept = at_most(seen[PMESH_KEPT], 4);
-    const uint32_t unvisited = at_most(seen[PMESH_UNVISITED], 6);
+    const uint32_t split = at_most(
+        counted(seen, PMESH_PARENT) + counted(seen, PMESH_NEWBORN), 5);
+    const uint32_t kept = at_most(counted(seen, PMESH_KEPT), 4);
+    const uint32_t unvisited = at_most(counted(seen, PMESH_UNVISITED), 6);
     return ((valence * 6 + split) * 5 + kept) * 7 + unvisited;
 }
 
@@ -213,10 +230,10 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
 }
 
 static bool code_flag(pmesh_codec *c, pmesh_coder *coder,
-                      const pmesh_oracle *oracle, uint32_t v,
-                      const pmesh_ring *ring, uint32_t rings)
+                      const pmesh_oracle *oracle, uint32_t v, uint64_t seen,
+                      uint32_t size)
 {
-    pmesh_bit *flag = &c->models.flag[flag_context(c, ring, rings)];
+    pmesh_bit *flag = &c->models.flag[flag_context(seen, size)];
     return pmesh_code_bit(coder, flag,
                           oracle && oracle->splits(oracle->user, v));
 }
@@ -229,8 +246,8 @@ static pmesh_status visit(pmesh_codec *c, pmesh_coder *coder,
         queue_rings(c, v);
         return PMESH_OK;
     }
-    queue_ring(c, &ring);
-    return code_flag(c, coder, oracle, v, &ring, 1)
+    const uint64_t seen = queue_ring(c, &ring);
+    return code_flag(c, coder, oracle, v, seen, ring.count + ring.open)
                ? split(c, coder, oracle, v, &ring)
                : PMESH_OK;
 }
@@ -239,9 +256,14 @@ static pmesh_status visit_joined(pmesh_codec *c, pmesh_coder *coder,
                                  const pmesh_oracle *oracle, uint32_t v)
 {
     pmesh_fans fans;
+    uint64_t seen = 0;
     queue_rings(c, v);
-    return pmesh_fans_gather(&c->mesh, v, &fans) &&
-                   code_flag(c, coder, oracle, v, fans.ring, fans.count)
+    if (!pmesh_fans_gather(&c->mesh, v, &fans))
+        return PMESH_OK;
+    for (uint32_t k = 0; k < fans.count; k++)
+        for (uint32_t i = 0; i < fans.ring[k].count; i++)
+            seen += count_one(c, fans.ring[k].vertex[i]);
+    return code_flag(c, coder, oracle, v, seen, fans.members)
                ? pmesh_join_split(c, coder, oracle, v, &fans)
                : PMESH_OK;
 }
