@@ -467,24 +467,6 @@ static uint32_t count_options(const cutter *s)
 
 /* ---- coding -------------------------------------------------------------- */
 
-/* The first of those that cost least, and how much. Where it is nobody can
- * tell: each lane keeps its own, and there is no branch. */
-static uint32_t cheapest(const options *list, int16_t *least)
-{
-    static const int16_t lane[LANES] = { 0, 1, 2, 3, 4, 5, 6, 7 };
-    lanes low = lanes_load(list->cost), at = lanes_load(lane), here = at;
-    for (uint32_t k = LANES; k < list->count; k += LANES) {
-        const lanes cost = lanes_load(list->cost + k);
-        here = lanes_add(here, lanes_of(LANES));
-        at = lanes_max(at, lanes_and(lanes_less(cost, low), here));
-        low = lanes_min(low, cost);
-    }
-    *least = (int16_t)lanes_least(low);
-    const lanes dearer = lanes_less(lanes_of(*least), low);
-    at = lanes_max(at, lanes_and(dearer, lanes_of(INT16_MAX)));
-    return (uint32_t)lanes_least(at);
-}
-
 /* All lanes around the option are stored: loads that follow wait for a part. */
 static void take(options *list, uint32_t option)
 {
@@ -537,7 +519,7 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
     options *list = s->list;
     const uint32_t count = count_options(s);
     int16_t least;
-    uint32_t best = cheapest(list, &least);
+    uint32_t best = lanes_first_least(list->cost, list->count, &least);
     make_shares(list, least);
     uint32_t sum = list->share_sum;
     *expected = false;
@@ -554,7 +536,7 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
         }
         take(list, best);
         sum -= share;
-        best = cheapest(list, &least);
+        best = lanes_first_least(list->cost, list->count, &least);
     }
     return best;
 }
