@@ -197,7 +197,10 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
     pmesh_cut cut = { 0, 0 };
     if (oracle)
         oracle->cut(oracle->user, v, ring, &cut);
-    pmesh_cut_code(c, coder, v, ring, &cut);
+    if (coder->relay)
+        coder->relay->cut(coder->relay->user, c, v, ring, &cut);
+    else
+        pmesh_cut_code(c, coder, v, ring, &cut);
 
     const uint32_t faces =
         cut.first != PMESH_NONE && cut.end != PMESH_NONE ? 2 : 1;
@@ -234,8 +237,11 @@ static bool code_flag(pmesh_codec *c, pmesh_coder *coder,
                       uint32_t size)
 {
     pmesh_bit *flag = &c->models.flag[flag_context(seen, size)];
-    return pmesh_code_bit(coder, flag,
-                          oracle && oracle->splits(oracle->user, v));
+    const bool splits = oracle && oracle->splits(oracle->user, v);
+    if (!coder->relay)
+        return pmesh_code_bit(coder, flag, splits);
+    coder->relay->flag(coder->relay->user, flag, splits);
+    return splits;
 }
 
 static pmesh_status visit(pmesh_codec *c, pmesh_coder *coder,
@@ -405,6 +411,10 @@ static void count_part(pmesh_codec *c, const pmesh_coder *coder, int part,
 {
     if (!coder->encoding)
         return;
+    if (coder->relay) {
+        coder->relay->part(coder->relay->user, part);
+        return;
+    }
     c->part_size[part] += coder->out->size - *written;
     *written = coder->out->size;
 }
