@@ -205,6 +205,15 @@ static inline uint8_t pmesh_state(const pmesh_codec *c, uint32_t v)
     return c->state[v] & (PMESH_QUEUED - 1);
 }
 
+/* The ring of v, or of its first fan; false if it is too large. */
+static inline bool pmesh_codec_ring(const pmesh_codec *c, uint32_t v,
+                                    pmesh_ring *ring)
+{
+    return c->mesh.fan ? pmesh_ring_gather(&c->mesh, v, ring)
+                       : pmesh_ring_gather_known(&c->mesh, v,
+                                                 c->near[v].degree, ring);
+}
+
 enum { PMESH_FACE_MARK = 32 };
 
 /* Faces of the mesh of the first n vertices; no fewer than those of the base. */

@@ -46,18 +46,15 @@ static uint64_t code_size(pmesh_coder *coder, const pmesh_expectation *at,
         q += pmesh_code_number(coder, at->escape,
                                (uint32_t)(bin - PMESH_UNARY));
     uint64_t result = q;
-    for (unsigned i = shift; i-- > 0;) {
-        const unsigned bit = size >> i & 1;
-        unsigned got;
-        if (node < LOW_MODELS && shift - i <= 2) {
-            got = pmesh_code_bit(coder, &at->low[node], bit);
-            node = 1 + got;
-        } else {
-            got = pmesh_code_raw(coder, 1, bit);
-        }
+    unsigned i = shift;
+    for (; i > 0 && i + 2 > shift; i--) {
+        const unsigned got =
+            pmesh_code_bit(coder, &at->low[node], size >> (i - 1) & 1);
+        node = 1 + got;
         result = result << 1 | got;
     }
-    return result;
+    const uint32_t rest = (uint32_t)(size & (((uint64_t)1 << i) - 1));
+    return result << i | pmesh_code_raw(coder, i, rest);
 }
 
 int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_expectation *at,
@@ -65,7 +62,7 @@ int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_expectation *at,
 {
     const int64_t center = (at->mean + FRACTION / 2) >> FRACTION_BITS;
     const int64_t part = at->mean - center * FRACTION; /* -8 .. 7 */
-    const unsigned lean = part < -2 ? 0 : part > 2 ? 2 : 1;
+    const unsigned lean = (unsigned)(part >= -2) + (part > 2);
     const int64_t r = value - center;
 
     if (!pmesh_code_bit_twice(coder, &at->any->zero[lean],
@@ -93,7 +90,7 @@ unsigned pmesh_how_far(int64_t off, unsigned scale)
 {
     const uint64_t size = (uint64_t)(off < 0 ? -off : off);
     const int over = size ? (int)half_octave(size) - (int)scale + 4 : 0;
-    return over < 2 ? 0 : over < 4 ? 1 : over < 6 ? 2 : PMESH_FAR - 1;
+    return (unsigned)(over >= 2) + (over >= 4) + (over >= 6);
 }
 
 unsigned pmesh_deviation_scale(uint64_t deviation, unsigned count)
