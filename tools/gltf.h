@@ -32,6 +32,7 @@ extern "C" {
 
 #define GLTF_NONE UINT32_MAX
 #define GLTF_MAX_DEPTH 64 /* of nested JSON values */
+#define GLTF_MAX_MEMBERS 4096 /* of a JSON object */
 #define GLTF_MAX_FACES ((uint64_t)1 << 27)
 
 /* Slots of a primitive: NORMAL, TEXCOORD_0..7, COLOR_0..7. */
@@ -58,7 +59,9 @@ typedef struct gltf_source {
 } gltf_source;
 
 /* Finds the JSON text; `warnings` takes what is odd but harmless. Nesting
- * beyond GLTF_MAX_DEPTH fails, so later stages may recurse over values. */
+ * beyond GLTF_MAX_DEPTH fails, so later stages may recurse over values, and so
+ * do objects with more than GLTF_MAX_MEMBERS, which those that keep their
+ * members in order search one by one. */
 bool gltf_open(const uint8_t *data, size_t size, gltf_source *out,
                asset *warnings, asset_error *error);
 
