@@ -279,9 +279,11 @@ typedef struct gltf_channels {
 bool gltf_is_coded(const gltf_primitive *p);
 
 /* Finds the channels of a mesh, the most needed first; warns of what is left
- * out. */
-void gltf_channels_of(const gltf_model *model, const gltf_mesh *mesh,
-                      const char *name, gltf_channels *out, asset *warnings);
+ * out. Fails if primitives that share elements make it look at more of them
+ * than the budget has bytes. */
+bool gltf_channels_of(const gltf_model *model, const gltf_mesh *mesh,
+                      const char *name, gltf_budget *budget, gltf_channels *out,
+                      asset *warnings, asset_error *error);
 
 /* A primitive's accessor for a channel; NULL: it has none that fits. */
 const gltf_accessor *gltf_channel_accessor(const gltf_model *model,
@@ -291,11 +293,12 @@ const gltf_accessor *gltf_channel_accessor(const gltf_model *model,
 /*
  * A mesh in its own space; faces of coded primitive k have material k. Fails
  * also if the mesh has no face at all: *empty tells. `bits` of the attributes
- * are those of the channels.
+ * are those of the channels. What it takes is taken from the budget, for meshes
+ * may share accessors.
  */
 bool gltf_mesh_asset(const gltf_model *model, const gltf_mesh *mesh,
-                     const gltf_channels *channels, asset *out, bool *empty,
-                     asset_error *error);
+                     const gltf_channels *channels, gltf_budget *budget,
+                     asset *out, bool *empty, asset_error *error);
 
 #ifdef __cplusplus
 }
