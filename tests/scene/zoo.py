@@ -357,6 +357,23 @@ def decals(f):
     f.node(mesh=f.mesh([under, over]))
 
 
+def wild(f):
+    """Every attribute with values that are no numbers, or too large."""
+    s = Sheet(12)
+    p = plain(f, s, material=0)
+    odd = (float('inf'), float('-inf'), float('nan'), 3e38, -3e38, 1e-45)
+    for name, width in (('NORMAL', 3), ('TANGENT', 4), ('TEXCOORD_0', 2),
+                        ('COLOR_0', 4), ('_HEAT', 1)):
+        rows = [tuple(odd[(i + k) % 6] if (i + k) % 5 == 0 else 0.5
+                      for k in range(width)) for i in range(len(s.points))]
+        p['attributes'][name] = number = f.accessor(rows)
+        for bound in ('min', 'max'):
+            f.json['accessors'][number].pop(bound, None)
+    f.json['materials'] = [{'normalTexture': {'index': 0}}]
+    f.json['textures'] = [{}]
+    f.node(mesh=f.mesh([p]))
+
+
 def main(folder):
     with open(os.path.join(folder, 'zoo image.png'), 'wb') as out:
         out.write(png(30))
@@ -366,6 +383,10 @@ def main(folder):
         f = File()
         make(f)
         f.save(os.path.join(folder, make.__name__ + '.glb'))
+    os.mkdir(os.path.join(folder, 'wild'))
+    f = File()
+    wild(f)
+    f.save(os.path.join(folder, 'wild', 'wild.glb'))
 
 
 main(sys.argv[1])
