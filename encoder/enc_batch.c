@@ -154,6 +154,8 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
         .parent = pair->parent,
         .before = { before[0], before[1], before[2] },
     };
+    if (out->reach->later)
+        enc_reach_note(out->reach, index, pair, link, offer->place);
     out->vertex_end[pair->child] = index;
     end_face(out, pair->left, index);
     end_face(out, pair->right, index);
@@ -391,13 +393,5 @@ uint32_t enc_batch_contract(enc_run *run, const enc_batch_plan *plan)
     enc_pricing_begin(&run->pricing, &run->surface, plan->taste,
                       run->out->contraction_count == 0);
     enc_collect(run, plan->guard);
-    if (!run->bound_is_due)
-        return contract_pairs(run, plan);
-    /* Others find out how far the last batch went while this one is made. */
-    enc_reach_begin(&run->reach, &run->surface, run->out);
-    const uint32_t accepted = contract_pairs(run, plan);
-    run->out->batch_error[run->out->batch_count - 1] =
-        enc_reach_end(&run->reach);
-    run->bound_is_due = false;
-    return accepted;
+    return contract_pairs(run, plan);
 }

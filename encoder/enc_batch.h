@@ -76,8 +76,6 @@ typedef struct enc_run {
     uint32_t face_target, vertex_target;
     uint32_t *segment_size; /* per segment of the guide: its vertices; NULL
                                unless segments have shares */
-    enc_reach reach;
-    bool bound_is_due;     /* of the last batch: see enc_reach_begin() */
     double error_limit;    /* of a level, in steps */
     bool undone;           /* a batch exceeded it */
     bool too_far;          /* the batch left out a pair because of it */

@@ -393,7 +393,6 @@ static pmesh_status code(job *j, const pmesh_mesh_input *in)
     if (!make_room(j, in))
         return PMESH_E_MEMORY;
     j->header.measured = j->config.measure;
-    fill_errors(j);
     j->header.sizes.joined = j->mesh->joined;
     write_names(j, in);
     status = write_base(j);
@@ -401,6 +400,8 @@ static pmesh_status code(job *j, const pmesh_mesh_input *in)
         status = write_levels(j);
     if (status == PMESH_OK && j->mesh->exact)
         status = enc_exact_write(&j->replay, &j->stream, j->room, &j->header);
+    enc_schedule_settle(&j->schedule);
+    fill_errors(j);
     return status;
 }
 

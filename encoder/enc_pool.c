@@ -28,6 +28,10 @@ struct enc_pool {
     void *user;
     uint32_t parts, next; /* those from `next` on are not begun */
     uint32_t running;
+    enc_pool_work aside;
+    void *aside_user;
+    uint32_t asked, done; /* parts */
+    bool busy;            /* with the next one of them */
     bool closing;
 };
 
@@ -46,6 +50,22 @@ static bool work_on(enc_pool *pool, unsigned worker)
     return true;
 }
 
+/* The same of the work aside. */
+static bool work_aside(enc_pool *pool, unsigned worker)
+{
+    if (pool->busy || pool->done == pool->asked)
+        return false;
+    const uint32_t part = pool->done;
+    pool->busy = true;
+    pthread_mutex_unlock(&pool->lock);
+    pool->aside(pool->aside_user, part, worker);
+    pthread_mutex_lock(&pool->lock);
+    pool->busy = false;
+    pool->done++;
+    pthread_cond_signal(&pool->ended);
+    return true;
+}
+
 static void *help(void *argument)
 {
     const helper *me = argument;
@@ -53,7 +73,7 @@ static void *help(void *argument)
 
     pthread_mutex_lock(&pool->lock);
     while (!pool->closing)
-        if (!work_on(pool, me->worker))
+        if (!work_on(pool, me->worker) && !work_aside(pool, me->worker))
             pthread_cond_wait(&pool->begun, &pool->lock);
     pthread_mutex_unlock(&pool->lock);
     return NULL;
@@ -177,6 +197,40 @@ void enc_pool_end(enc_pool *pool)
     pthread_mutex_unlock(&pool->lock);
 }
 
+void enc_pool_aside(enc_pool *pool, enc_pool_work work, void *user)
+{
+    pthread_mutex_lock(&pool->lock);
+    pool->aside = work;
+    pool->aside_user = user;
+    pool->asked = pool->done = 0;
+    pthread_mutex_unlock(&pool->lock);
+}
+
+void enc_pool_aside_more(enc_pool *pool)
+{
+    pthread_mutex_lock(&pool->lock);
+    pool->asked++;
+    pthread_cond_signal(&pool->begun);
+    pthread_mutex_unlock(&pool->lock);
+}
+
+void enc_pool_give_way(enc_pool *pool, unsigned worker)
+{
+    pthread_mutex_lock(&pool->lock);
+    while (work_on(pool, worker))
+        ;
+    pthread_mutex_unlock(&pool->lock);
+}
+
+void enc_pool_aside_end(enc_pool *pool)
+{
+    pthread_mutex_lock(&pool->lock);
+    while (pool->done < pool->asked)
+        if (!work_aside(pool, 0))
+            pthread_cond_wait(&pool->ended, &pool->lock);
+    pthread_mutex_unlock(&pool->lock);
+}
+
 #else /* the calling thread alone */
 
 enc_pool *enc_pool_create(const pmesh_allocator *allocator, uint32_t threads)
@@ -212,6 +266,29 @@ void enc_pool_begin(enc_pool *pool, uint32_t parts, enc_pool_work work,
 }
 
 void enc_pool_end(enc_pool *pool)
+{
+    (void)pool;
+}
+
+void enc_pool_aside(enc_pool *pool, enc_pool_work work, void *user)
+{
+    (void)pool;
+    (void)work;
+    (void)user;
+}
+
+void enc_pool_aside_more(enc_pool *pool)
+{
+    (void)pool;
+}
+
+void enc_pool_give_way(enc_pool *pool, unsigned worker)
+{
+    (void)pool;
+    (void)worker;
+}
+
+void enc_pool_aside_end(enc_pool *pool)
 {
     (void)pool;
 }

@@ -44,4 +44,16 @@ void enc_pool_begin(enc_pool *pool, uint32_t parts, enc_pool_work work,
                     void *user);
 void enc_pool_end(enc_pool *pool);
 
+/*
+ * Work aside, of which there is one at a time: parts that are asked for one by
+ * one, and done in this order, never two at once, by the others when they have
+ * nothing else to do. Loops go on meanwhile; a part calls enc_pool_give_way()
+ * often, which helps them, and does not care who is its worker. The pool is not
+ * NULL.
+ */
+void enc_pool_aside(enc_pool *pool, enc_pool_work work, void *user);
+void enc_pool_aside_more(enc_pool *pool);
+void enc_pool_give_way(enc_pool *pool, unsigned worker);
+void enc_pool_aside_end(enc_pool *pool); /* when all are done */
+
 #endif

@@ -7,6 +7,7 @@
 
 #include "encoder/enc_bits.h"
 #include "encoder/enc_distance.h"
+#include "encoder/enc_join.h"
 #include "format/alloc.h"
 
 /* One of so many vertices goes first, so that the others soon have enough. */
@@ -16,71 +17,73 @@ enum { PIONEERS = 61 };
  * of half-edges stay below 2^30 (ENC_MAX_CORNERS). */
 #define HEIR UINT32_C(0x40000000)
 
-/* ---- the surface that is searched ---- */
+/* ---- set-up ---- */
 
-/* A copy of what a search looks at: the surface goes on meanwhile. */
-static bool create_copy(const enc_mesh *mesh, enc_surface *copy)
+/* Of what contractions and searches need. */
+static bool create_copy(const enc_surface *from, enc_surface *to)
 {
+    const enc_mesh *mesh = from->mesh;
     const pmesh_allocator *a = &mesh->allocator;
     const size_t n = mesh->vertex_count, corners = 3 * (size_t)mesh->face_count;
 
-    *copy = (enc_surface){ .mesh = mesh };
-    copy->vertex = pmesh_alloc(a, corners, sizeof *copy->vertex);
-    copy->twin = pmesh_alloc(a, corners, sizeof *copy->twin);
-    copy->first = pmesh_alloc(a, n, sizeof *copy->first);
-    copy->position = pmesh_alloc(a, n, sizeof *copy->position);
-    copy->changed = pmesh_alloc(a, enc_bit_words(mesh->face_count),
-                                sizeof *copy->changed);
+    *to = (enc_surface){ .mesh = mesh };
+    to->vertex = pmesh_alloc(a, corners, sizeof *to->vertex);
+    to->twin = pmesh_alloc(a, corners, sizeof *to->twin);
+    to->first = pmesh_alloc(a, n, sizeof *to->first);
+    to->degree = pmesh_alloc(a, n, sizeof *to->degree);
+    to->position = pmesh_alloc(a, n, sizeof *to->position);
+    to->changed = pmesh_alloc_zero(a, enc_bit_words(mesh->face_count),
+                                   sizeof *to->changed);
     if (mesh->joined)
-        copy->fan = pmesh_alloc(a, corners, sizeof *copy->fan);
-    return copy->vertex && copy->twin && copy->first && copy->position &&
-           copy->changed && (copy->fan || !mesh->joined);
+        to->fan = pmesh_alloc(a, corners, sizeof *to->fan);
+    if (!to->vertex || !to->twin || !to->first || !to->degree ||
+        !to->position || !to->changed || (mesh->joined && !to->fan))
+        return false;
+    memcpy(to->vertex, from->vertex, corners * sizeof *to->vertex);
+    memcpy(to->twin, from->twin, corners * sizeof *to->twin);
+    memcpy(to->first, from->first, n * sizeof *to->first);
+    memcpy(to->degree, from->degree, n * sizeof *to->degree);
+    memcpy(to->position, from->position, n * sizeof *to->position);
+    if (mesh->joined)
+        memcpy(to->fan, from->fan, corners * sizeof *to->fan);
+    return true;
 }
 
-static void copy_block(void *user, uint32_t part, unsigned worker)
-{
-    const enc_reach *r = user;
-    const enc_surface *from = r->from, *to = &r->copy;
-    const size_t corner = 3 * (size_t)part * ENC_BLOCK;
-    const size_t corners = 3 * (size_t)r->mesh->face_count;
-    const size_t v = (size_t)part * ENC_BLOCK;
+static void find_later(void *user, uint32_t batch, unsigned worker);
 
-    (void)worker;
-    if (corner < corners) {
-        const size_t left = corners - corner, block = 3 * (size_t)ENC_BLOCK;
-        const size_t size = (left < block ? left : block) * sizeof *to->vertex;
-        memcpy(to->vertex + corner, from->vertex + corner, size);
-        memcpy(to->twin + corner, from->twin + corner, size);
-        if (to->fan)
-            memcpy(to->fan + corner, from->fan + corner, size);
-    }
-    if (v < r->mesh->vertex_count) {
-        const size_t count = enc_block_end(r->mesh, part) - v;
-        memcpy(to->first + v, from->first + v, count * sizeof *to->first);
-        memcpy(to->position + v, from->position + v,
-               count * sizeof *to->position);
-    }
+static bool prepare_later(enc_reach *r, const enc_surface *s,
+                          const enc_schedule *made)
+{
+    const pmesh_allocator *a = &r->mesh->allocator;
+    const size_t n = r->mesh->vertex_count;
+
+    r->made = *made;
+    r->redo = pmesh_alloc(a, n, sizeof *r->redo);
+    r->into = pmesh_alloc(a, n, sizeof *r->into);
+    if (!create_copy(s, &r->copy) || !r->redo || !r->into)
+        return false;
+    memset(r->into, 0xff, n * sizeof *r->into);
+    r->from = &r->copy;
+    enc_pool_aside(r->mesh->pool, find_later, r);
+    return true;
 }
 
-static uint32_t copy_parts(const enc_mesh *mesh)
+pmesh_status enc_reach_create(const enc_surface *s, bool later,
+                              const enc_schedule *made, enc_reach *out)
 {
-    const uint32_t faces = (mesh->face_count + ENC_BLOCK - 1) / ENC_BLOCK;
-    return faces > enc_blocks(mesh) ? faces : enc_blocks(mesh);
-}
-
-pmesh_status enc_reach_create(const enc_mesh *mesh, bool later, enc_reach *out)
-{
+    const enc_mesh *mesh = s->mesh;
     const pmesh_allocator *a = &mesh->allocator;
     const bool helped = mesh->pool && mesh->vertex_count >= ENC_SHARED_VERTICES;
     bool good = true;
 
     *out = (enc_reach){ .mesh = mesh, .later = later && helped };
     out->beside = pmesh_alloc(a, mesh->vertex_count, sizeof *out->beside);
-    if (helped)
-        out->guess = pmesh_alloc(a, mesh->vertex_count, sizeof *out->guess);
     if (out->later)
-        good = create_copy(mesh, &out->copy);
-    if (!good || !out->beside || (helped && !out->guess)) {
+        good = prepare_later(out, s, made);
+    else if (helped)
+        good = (out->guess = pmesh_alloc(a, mesh->vertex_count,
+                                         sizeof *out->guess)) != NULL;
+    if (!good || !out->beside) {
         enc_reach_destroy(out);
         return PMESH_E_MEMORY;
     }
@@ -96,6 +99,8 @@ void enc_reach_destroy(enc_reach *r)
         const uint32_t n = r->mesh->vertex_count;
         pmesh_release(a, r->beside, n, sizeof *r->beside);
         pmesh_release(a, r->guess, n, sizeof *r->guess);
+        pmesh_release(a, r->redo, n, sizeof *r->redo);
+        pmesh_release(a, r->into, n, sizeof *r->into);
         enc_surface_destroy(&r->copy);
     }
     *r = (enc_reach){ 0 };
@@ -223,10 +228,16 @@ typedef struct descent {
     const enc_schedule *made;
 } descent;
 
-static uint32_t survivor(const enc_schedule *made, uint32_t v)
+static uint32_t survivor(const descent *d, uint32_t v)
 {
-    while (made->vertex_end[v] != ENC_NONE)
-        v = made->contraction[made->vertex_end[v]].parent;
+    const uint32_t *into = d->reach->into, *end = d->made->vertex_end;
+
+    if (into)
+        while (into[v] != ENC_NONE)
+            v = into[v];
+    else
+        while (end[v] != ENC_NONE)
+            v = d->made->contraction[end[v]].parent;
     return v;
 }
 
@@ -235,7 +246,6 @@ static uint32_t survivor(const enc_schedule *made, uint32_t v)
 static void descend_block(void *user, uint32_t part, unsigned worker)
 {
     const descent *d = user;
-    const enc_schedule *made = d->made;
     const enc_surface *s = d->reach->from;
     uint32_t *beside = d->reach->beside;
     const uint32_t end = enc_block_end(d->reach->mesh, part);
@@ -246,7 +256,7 @@ static void descend_block(void *user, uint32_t part, unsigned worker)
         while (!(h & ENC_AT_VERTEX) && s->vertex[h] == ENC_NONE)
             h = s->twin[h];
         if (h & ENC_AT_VERTEX)
-            h = ENC_AT_VERTEX | survivor(made, h & ~ENC_AT_VERTEX);
+            h = ENC_AT_VERTEX | survivor(d, h & ~ENC_AT_VERTEX);
         else if (h != beside[v])
             h |= HEIR;
         beside[v] = h;
@@ -258,58 +268,107 @@ static enc_pool *pool_of(const enc_reach *r)
     return r->guess ? r->mesh->pool : NULL;
 }
 
-static void start(enc_reach *r, const enc_surface *s, const enc_schedule *made)
+static void look_ahead(enc_reach *r)
 {
-    descent d = { r, made };
-
-    r->from = s;
-    enc_pool_run(pool_of(r), enc_blocks(r->mesh), descend_block, &d);
     for (uint32_t v = 0; v < r->mesh->vertex_count; v += PIONEERS)
         reach_from(r, v);
 }
 
-static size_t changed_size(const enc_reach *r)
+static void settle_block(enc_reach *r, uint32_t part)
 {
-    return enc_bit_words(r->mesh->face_count) * sizeof *r->from->changed;
-}
+    const uint32_t end = enc_block_end(r->mesh, part);
 
-static double settle(enc_reach *r)
-{
-    for (uint32_t v = 0; v < r->mesh->vertex_count; v++) {
+    for (uint32_t v = part * ENC_BLOCK; v < end; v++) {
         if (r->guess && r->most < (double)r->guess[v].below)
             r->beside[v] = r->guess[v].beside;
         else
             reach_from(r, v);
     }
-    return sqrt(r->most);
+}
+
+static void forget_changes(const enc_surface *s)
+{
+    memset(s->changed, 0,
+           enc_bit_words(s->mesh->face_count) * sizeof *s->changed);
 }
 
 double enc_reach_bound(enc_reach *r, const enc_surface *s,
                        const enc_schedule *made)
 {
-    start(r, s, made);
+    descent d = { r, made };
+    const uint32_t blocks = enc_blocks(r->mesh);
+
+    r->from = s;
+    enc_pool_run(pool_of(r), blocks, descend_block, &d);
+    look_ahead(r);
     if (r->guess)
-        enc_pool_run(pool_of(r), enc_blocks(r->mesh), guess_block, r);
-    const double bound = settle(r);
-    memset(s->changed, 0, changed_size(r));
-    return bound;
+        enc_pool_run(pool_of(r), blocks, guess_block, r);
+    for (uint32_t i = 0; i < blocks; i++)
+        settle_block(r, i);
+    forget_changes(s);
+    return sqrt(r->most);
 }
 
-void enc_reach_begin(enc_reach *r, const enc_surface *s,
-                     const enc_schedule *made)
+/* ---- later ---- */
+
+void enc_reach_note(enc_reach *r, uint32_t index, const enc_pair *pair,
+                    bool general, const int32_t place[3])
 {
-    start(r, s, made);
-    enc_pool_run(pool_of(r), copy_parts(r->mesh), copy_block, r);
-    memcpy(r->copy.changed, s->changed, changed_size(r));
-    memset(s->changed, 0, changed_size(r));
-    r->from = &r->copy;
-    enc_pool_begin(pool_of(r), enc_blocks(r->mesh), guess_block, r);
+    r->redo[index] = (enc_redo){ general ? ENC_NONE : pair->left,
+                                 general ? ENC_NONE : pair->right,
+                                 { place[0], place[1], place[2] } };
 }
 
-double enc_reach_end(enc_reach *r)
+static void do_again(enc_reach *r, uint32_t index)
 {
-    enc_pool_end(pool_of(r));
-    return settle(r);
+    const enc_contraction *c = &r->made.contraction[index];
+    const enc_redo *redo = &r->redo[index];
+    const enc_pair pair = { c->child, c->parent, redo->left, redo->right };
+    enc_link link;
+
+    if (pair.left != ENC_NONE || pair.right != ENC_NONE)
+        enc_surface_contract(&r->copy, &pair, redo->place, NULL);
+    else if (enc_join_link(&r->copy, c->child, c->parent, &link))
+        enc_join_contract(&r->copy, c->child, c->parent, &link, redo->place,
+                          NULL);
+    r->into[c->child] = c->parent;
+}
+
+/* Between blocks others may need help. */
+static void find_later(void *user, uint32_t batch, unsigned worker)
+{
+    enc_reach *r = user;
+    const enc_schedule *made = &r->made;
+    descent d = { r, made };
+    const uint32_t blocks = enc_blocks(r->mesh);
+
+    const uint32_t end = made->batch_first[batch + 1];
+
+    for (uint32_t t = made->batch_first[batch]; t < end; t++) {
+        do_again(r, t);
+        if (t % (ENC_BLOCK / 4) == 0)
+            enc_pool_give_way(r->mesh->pool, worker);
+    }
+    for (uint32_t i = 0; i < blocks; i++)
+        descend_block(&d, i, worker);
+    look_ahead(r);
+    for (uint32_t i = 0; i < blocks; i++) {
+        settle_block(r, i);
+        enc_pool_give_way(r->mesh->pool, worker);
+    }
+    forget_changes(&r->copy);
+    made->batch_error[batch] = sqrt(r->most);
+}
+
+void enc_reach_later(enc_reach *r)
+{
+    enc_pool_aside_more(r->mesh->pool);
+}
+
+void enc_reach_settle(enc_reach *r)
+{
+    if (r->later)
+        enc_pool_aside_end(r->mesh->pool);
 }
 
 /* From the faces around v that stay, if the ends are both at `place`; but not

@@ -5,6 +5,9 @@
 
 #include "format/alloc.h"
 
+/* Levels of fewer splits are not worth two threads. */
+enum { RELAYED_SPLITS = 500 };
+
 static uint32_t next_corner(uint32_t c)
 {
     return c % 3 == 2 ? c - 2 : c + 1;
@@ -331,6 +334,7 @@ void enc_replay_destroy(enc_replay *r)
     pmesh_release(a, r->wedge_list, w, 4);
     pmesh_release(a, r->wedge_first, n + 1, 4);
     pmesh_release(a, r->block, 1, (size_t)r->block_size);
+    enc_relay_destroy(r->relay);
     *r = (enc_replay){ 0 };
 }
 
@@ -371,6 +375,9 @@ void enc_replay_begin(enc_replay *r, uint32_t batch)
                sizeof *r->position);
     }
     pmesh_level_begin(&r->codec);
+    if (!r->relay && r->splits_left >= RELAYED_SPLITS)
+        r->relay = enc_relay_create(&r->allocator, r->mesh->pool,
+                                    &r->codec);
 }
 
 /* The block's numbers were changed: follow. */
@@ -416,7 +423,8 @@ pmesh_status enc_replay_block(enc_replay *r, pmesh_coder *coder,
                               uint32_t splits)
 {
     const pmesh_status status =
-        pmesh_block_code(&r->codec, coder, &r->oracle, splits);
+        r->relay ? enc_relay_block(r->relay, coder, &r->oracle, splits)
+                 : pmesh_block_code(&r->codec, coder, &r->oracle, splits);
     if (r->lost)
         return PMESH_E_CORRUPT;
     if (status != PMESH_OK)

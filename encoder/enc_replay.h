@@ -12,6 +12,7 @@
 #define ENC_REPLAY_H
 
 #include "encoder/enc_mesh.h"
+#include "encoder/enc_relay.h"
 #include "encoder/enc_schedule.h"
 #include "format/codec.h"
 #include "format/join.h"
@@ -51,6 +52,8 @@ typedef struct enc_replay {
     bool moves;           /* optimal placement */
     uint32_t batch;       /* being replayed */
     uint32_t splits_left; /* of it */
+    enc_relay *relay;     /* from the first level on that is worth two threads;
+                             or NULL */
     uint32_t base_faces, base_vertices;
     pmesh_base_coder base_coder; /* who coded the base, once it is */
 } enc_replay;

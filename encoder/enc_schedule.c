@@ -107,6 +107,16 @@ static pmesh_status schedule_create(const enc_mesh *mesh, enc_schedule *out)
     return PMESH_OK;
 }
 
+void enc_schedule_settle(enc_schedule *s)
+{
+    if (!s->reach)
+        return;
+    enc_reach_settle(s->reach);
+    enc_reach_destroy(s->reach);
+    pmesh_release(&s->allocator, s->reach, 1, sizeof *s->reach);
+    s->reach = NULL;
+}
+
 void enc_schedule_destroy(enc_schedule *s)
 {
     const pmesh_allocator *a = &s->allocator;
@@ -114,6 +124,7 @@ void enc_schedule_destroy(enc_schedule *s)
 
     if (!a->release)
         return;
+    enc_schedule_settle(s);
     pmesh_release(a, s->batch_first, PMESH_MAX_LEVELS, sizeof *s->batch_first);
     pmesh_release(a, s->batch_error, PMESH_MAX_LEVELS, sizeof *s->batch_error);
     pmesh_release(a, s->contraction, n, sizeof *s->contraction);
@@ -205,6 +216,17 @@ static void destroy_scratch(const enc_mesh *mesh, enc_run *run)
     pmesh_release(a, run->views, others, sizeof *run->views);
 }
 
+static pmesh_status create_reach(enc_run *run)
+{
+    enc_schedule *out = run->out;
+
+    out->reach = pmesh_alloc_zero(&out->allocator, 1, sizeof *out->reach);
+    return out->reach ? enc_reach_create(&run->surface,
+                                         !(run->config->base_error > 0), out,
+                                         out->reach)
+                      : PMESH_E_MEMORY;
+}
+
 static pmesh_status run_create(const enc_mesh *mesh,
                                const pmesh_encoder_config *config,
                                enc_schedule *schedule, enc_run *run)
@@ -222,7 +244,7 @@ static pmesh_status run_create(const enc_mesh *mesh,
         status = enc_queue_create(a, count_edges(mesh) + near_room(mesh),
                                   &run->queue);
     if (status == PMESH_OK)
-        status = enc_reach_create(mesh, !(config->base_error > 0), &run->reach);
+        status = create_reach(run);
     if (status == PMESH_OK)
         status = find_near(mesh, run);
     if (status == PMESH_OK &&
@@ -255,7 +277,6 @@ static void run_destroy(const enc_mesh *mesh, enc_run *run)
     if (run->queue.list)
         enc_queue_destroy(&run->queue);
     enc_near_destroy(&run->near);
-    enc_reach_destroy(&run->reach);
     pmesh_release(a, run->edge_state,
                   3 * (size_t)mesh->face_count + near_room(mesh), 1);
     pmesh_release(a, run->taken, mesh->vertex_count, sizeof *run->taken);
@@ -334,7 +355,8 @@ static enc_batch_plan plan_batch(const enc_run *run, uint32_t variant)
         plan.guard = fmin(plan.guard, light_share(run));
     if (run->joins_sheets)
         plan.guard = 1; /* there is little else */
-    if (4 * run->reach.most > run->error_limit * run->error_limit)
+    if (run->error_limit < INFINITY &&
+        4 * run->out->reach->most > run->error_limit * run->error_limit)
         plan.share *= CLOSE_SHARE;
     plan.limit = (uint32_t)(plan.share * n);
     if (plan.limit == 0)
@@ -379,9 +401,9 @@ static void undo_batch(enc_run *run)
 static bool close_batch(enc_run *run)
 {
     enc_schedule *out = run->out;
+    const bool later = out->reach->later;
     const double bound =
-        run->reach.later ? 0
-                         : enc_reach_bound(&run->reach, &run->surface, out);
+        later ? 0 : enc_reach_bound(out->reach, &run->surface, out);
 
     if (bound > run->error_limit) {
         undo_batch(run);
@@ -390,7 +412,8 @@ static bool close_batch(enc_run *run)
     }
     out->batch_error[out->batch_count] = bound;
     out->batch_first[++out->batch_count] = out->contraction_count;
-    run->bound_is_due = run->reach.later;
+    if (later)
+        enc_reach_later(out->reach);
     return true;
 }
 
@@ -415,9 +438,6 @@ static void run_batches(enc_run *run, uint32_t variant)
         else if (taken == 0)
             break;
     }
-    if (run->bound_is_due)
-        out->batch_error[out->batch_count - 1] =
-            enc_reach_bound(&run->reach, &run->surface, out);
 }
 
 static pmesh_simplify_end reason(const enc_run *run)
@@ -464,6 +484,8 @@ pmesh_status enc_schedule_build(const enc_mesh *mesh,
         set_targets(&run);
         run_batches(&run, variant);
         out->end = reason(&run);
+        if (!out->reach->later)
+            enc_schedule_settle(out);
         out->position = run.surface.position;
         run.surface.position = NULL;
         if (run.cancelled || run.starved)

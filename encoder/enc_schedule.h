@@ -36,6 +36,7 @@ typedef struct enc_schedule {
                               0 is contracted first, so it is the finest */
     double *batch_error;   /* per batch: bound of the distance in steps after
                               it, see enc_reach.h; never falls */
+    struct enc_reach *reach; /* finds these out; NULL: they are known */
     enc_contraction *contraction; /* in the order of contraction */
     uint32_t contraction_count;
 
@@ -66,6 +67,10 @@ uint32_t enc_schedule_variants(const pmesh_encoder_config *config);
 pmesh_status enc_schedule_build(const enc_mesh *mesh,
                                 const pmesh_encoder_config *config,
                                 uint32_t variant, enc_schedule *out);
+
+/* Waits for the last of batch_error, if there are threads; all else is complete
+ * before. */
+void enc_schedule_settle(enc_schedule *schedule);
 
 void enc_schedule_destroy(enc_schedule *schedule);
 

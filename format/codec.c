@@ -29,13 +29,14 @@ static uint64_t rows_of(const pmesh_codec_sizes *s)
     return s->joined ? largest(s->base_fans, s->vertices) : s->vertices;
 }
 
-/* Levels do not visit what they make, the last one least of all. */
+/* Levels do not visit what they make, the last one least of all. One place
+ * more: what is there already is written behind the last, and not counted. */
 static uint64_t order_size(const pmesh_codec_sizes *s)
 {
     if (!s->coarse_vertices)
-        return rows_of(s);
-    return s->joined ? largest(s->base_fans, s->coarse_vertices)
-                     : s->coarse_vertices;
+        return rows_of(s) + 1;
+    return 1 + (s->joined ? largest(s->base_fans, s->coarse_vertices)
+                          : s->coarse_vertices);
 }
 
 static void carve_mesh(carver *k, pmesh_mesh *m, const pmesh_codec_sizes *s)

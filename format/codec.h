@@ -32,6 +32,9 @@ typedef enum pmesh_visit {
     PMESH_QUEUED = 8   /* beside PMESH_UNVISITED: it is in the order */
 } pmesh_visit;
 
+struct pmesh_codec;
+struct pmesh_residual; /* see residual.h */
+
 typedef struct pmesh_fans pmesh_fans; /* see join.h */
 typedef struct pmesh_parting pmesh_parting;
 
@@ -70,6 +73,19 @@ typedef struct pmesh_oracle {
     const uint16_t *(*values)(void *user, uint32_t wedge);
     uint32_t (*material)(void *user, uint32_t face);
 } pmesh_oracle;
+
+/* Takes what an encoding coder is given, so that another thread codes it, in
+ * the order of the calls; only of meshes that are not joined and have neither
+ * attributes nor materials. What is pointed at may change behind a call, but for
+ * models, which the walk does not look into. */
+typedef struct pmesh_relay {
+    void *user;
+    void (*flag)(void *user, pmesh_bit *model, bool splits);
+    void (*cut)(void *user, const struct pmesh_codec *c, uint32_t v,
+                const pmesh_ring *ring, const pmesh_cut *cut);
+    void (*residual)(void *user, const struct pmesh_residual *residual);
+    void (*part)(void *user, int part); /* ends here: see part_size */
+} pmesh_relay;
 
 /* The block being coded: what it appends to the mesh. */
 typedef struct pmesh_block {
@@ -187,6 +203,15 @@ typedef struct pmesh_codec {
 static inline uint8_t pmesh_state(const pmesh_codec *c, uint32_t v)
 {
     return c->state[v] & (PMESH_QUEUED - 1);
+}
+
+/* The ring of v, or of its first fan; false if it is too large. */
+static inline bool pmesh_codec_ring(const pmesh_codec *c, uint32_t v,
+                                    pmesh_ring *ring)
+{
+    return c->mesh.fan ? pmesh_ring_gather(&c->mesh, v, ring)
+                       : pmesh_ring_gather_known(&c->mesh, v,
+                                                 c->near[v].degree, ring);
 }
 
 enum { PMESH_FACE_MARK = 32 };

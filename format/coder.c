@@ -3,19 +3,14 @@
 
 enum { PRIOR_USES = 12 }; /* a probability from a table counts as many bits */
 
-#define R(n)      (16384 / (2 * (n) + 3))
-#define R4(n)     R(n), R((n) + 1), R((n) + 2), R((n) + 3)
-#define R32(n)                                                                 \
-    R4(n), R4((n) + 4), R4((n) + 8), R4((n) + 12), R4((n) + 16), R4((n) + 20), \
-        R4((n) + 24), R4((n) + 28)
+#define R(n)   { 16384 / (2 * (n) + 3), (n) < PMESH_BIT_MOST_USES }
+#define R4(n)  R(n), R((n) + 1), R((n) + 2), R((n) + 3)
+#define R16(n) R4(n), R4((n) + 4), R4((n) + 8), R4((n) + 12)
 
 /* With the last entry estimates become exponential averages; before, they are
  * plain ones. */
-const uint16_t pmesh_bit_rate[PMESH_BIT_MOST_USES + 1] = {
-    R32(0),
-    R32(32),
-    R32(64),
-    R32(96),
+const pmesh_bit_rate pmesh_bit_rates[PMESH_BIT_MOST_USES + 1] = {
+    R16(0), R16(16), R16(32), R16(48), R16(64), R16(80), R16(96), R16(112),
 };
 
 void pmesh_bits_init(pmesh_bit *bits, size_t count)

@@ -18,6 +18,7 @@
 
 typedef struct pmesh_coder {
     bool encoding;
+    const struct pmesh_relay *relay; /* encoding: see codec.h; or NULL */
     uint64_t range;
     uint64_t code;     /* decoding: offset into the range */
     uint64_t low;      /* encoding: where the range starts */
@@ -89,17 +90,23 @@ static inline void pmesh_coder_narrow(pmesh_coder *c, uint64_t skip,
 /* Encoding: what has been written so far, in 1/256 bit. */
 uint64_t pmesh_coder_spent(const pmesh_coder *c);
 
-/* 2 / (2 uses + 3), in 1/8192: how far an estimate goes towards a new bit. */
-extern const uint16_t pmesh_bit_rate[PMESH_BIT_MOST_USES + 1];
+/* How far an estimate goes towards a new bit: 2 / (2 uses + 3), in 1/8192; and
+ * what is added to the uses. */
+typedef struct pmesh_bit_rate {
+    uint32_t rate, use;
+} pmesh_bit_rate;
+
+extern const pmesh_bit_rate pmesh_bit_rates[PMESH_BIT_MOST_USES + 1];
 
 static inline void pmesh_bit_learn(pmesh_bit *m, unsigned bit)
 {
-    const uint32_t uses = pmesh_bit_uses(m), counted = 1u << PMESH_BIT_USES;
+    const pmesh_bit_rate *by = &pmesh_bit_rates[pmesh_bit_uses(m)];
+    const uint32_t counted = 1u << PMESH_BIT_USES;
     const int32_t one = (1 << (32 - PMESH_BIT_USES)) - 1;
     const int32_t off =
         (((int32_t)bit - 1) & one) - (int32_t)(m->state >> PMESH_BIT_USES);
-    const uint32_t step = (uint32_t)(off >> 3) * pmesh_bit_rate[uses];
-    m->state += (step & ~(counted - 1)) + (uses < PMESH_BIT_MOST_USES);
+    const uint32_t step = (uint32_t)(off >> 3) * by->rate;
+    m->state += (step & ~(counted - 1)) + by->use;
 }
 
 /* One bit that is 0 with probability p / 65536, 0 < p < 65536. Which way it

@@ -113,19 +113,24 @@ static uint32_t gather(cutter *s, const pmesh_codec *c, uint32_t v,
     const int32_t(*position)[3] = (const int32_t(*)[3])c->mesh.position;
     const quads from = quads_triple(position[v]);
     quads all = quads_of(0);
+    uint32_t newborn[PMESH_MAX_RING];
     s->newborn = 0;
+    const uint32_t end = padded(s->n);
+    for (uint32_t i = end - LANES; i < end; i++) /* a number known beforehand */
+        d[i] = quads_of(0);
     for (uint32_t i = 0; i < s->n; i++) {
         const uint32_t x = ring->vertex[i];
         d[i] = quads_sub(quads_triple(position[x]), from);
         all = quads_or(all, quads_size(d[i]));
-        if (c->state[x] != PMESH_NEWBORN)
-            continue;
-        for (int k = 0; k < 3; k++)
-            drift[k] += position[x][k] - position[c->mesh.parent[x]][k];
-        s->newborn++;
+        newborn[s->newborn] = x;
+        s->newborn += c->state[x] == PMESH_NEWBORN;
     }
-    for (uint32_t i = s->n; i < padded(s->n); i++)
-        d[i] = quads_of(0);
+    for (uint32_t i = 0; i < s->newborn; i++) {
+        const int32_t *x = position[newborn[i]];
+        const int32_t *parent = position[c->mesh.parent[newborn[i]]];
+        for (int k = 0; k < 3; k++)
+            drift[k] += x[k] - parent[k];
+    }
     return quads_any(all);
 }
 
@@ -237,10 +242,11 @@ static void weigh_wings(cutter *s, const pmesh_codec *c, const pmesh_ring *ring)
     const lanes none = lanes_of(0),
                 by = lanes_of(
                     (int16_t)(s->weights->reach[s->open][s->newborn > 0] >> 4));
+    for (int side = 0; side < 2; side++)
+        for (int i = 0; i < LANES; i += QUADS)
+            quads_store(sum[side] + count - LANES + i, quads_of(0));
     look_up_wings(s, c, ring, sum);
     for (int side = 0; side < 2; side++) {
-        for (uint32_t i = s->n; i < count; i++)
-            sum[side][i] = 0;
         for (uint32_t i = 0; i < count; i += LANES) {
             const lanes reach = lanes_load(s->reach + i);
             const quads first = quads_add(quads_first(by, none, reach, none),
@@ -346,7 +352,8 @@ static inline lanes weigh_shape(options *list, const common *o, uint32_t lane,
 }
 
 /* In a row's first `live` lanes nothing, in the others TAKEN. */
-#define X8(x)  x, x, x, x, x, x, x, x
+#define X7(x)  x, x, x, x, x, x, x
+#define X8(x)  X7(x), x
 #define X24(x) X8(x), X8(x), X8(x)
 static const int16_t barrier[] = { X24(INT16_MIN), X24(INT16_MIN), X24(TAKEN),
                                    X24(TAKEN) };
@@ -460,22 +467,14 @@ static uint32_t count_options(const cutter *s)
 
 /* ---- coding -------------------------------------------------------------- */
 
-static int16_t least_cost(const options *list)
+/* All lanes around the option are stored: loads that follow wait for a part. */
+static void take(options *list, uint32_t option)
 {
-    lanes least = lanes_of(TAKEN);
-    for (uint32_t k = 0; k < list->count; k += LANES)
-        least = lanes_min(least, lanes_load(list->cost + k));
-    return (int16_t)lanes_least(least);
-}
-
-/* The first one that costs so much. */
-static uint32_t cheapest(const options *list, int16_t least)
-{
-    uint32_t k = 0;
-    int place = lanes_find(lanes_load(list->cost), least);
-    while (place == LANES)
-        place = lanes_find(lanes_load(list->cost + (k += LANES)), least);
-    return k + (uint32_t)place;
+    static const int16_t only[] = { X7(INT16_MIN), TAKEN, X7(INT16_MIN) };
+    const uint32_t lane = option % LANES;
+    int16_t *cost = list->cost + (option - lane);
+    lanes_store(cost,
+                lanes_max(lanes_load(cost), lanes_load(only + 7 - lane)));
 }
 
 /* About 2^(-cost) of every option, that of the least cost as 2^15: (1 - x)^16,
@@ -519,8 +518,8 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
 {
     options *list = s->list;
     const uint32_t count = count_options(s);
-    int16_t least = least_cost(list);
-    uint32_t best = cheapest(list, least);
+    int16_t least;
+    uint32_t best = lanes_first_least(list->cost, list->count, &least);
     make_shares(list, least);
     uint32_t sum = list->share_sum;
     *expected = false;
@@ -535,9 +534,9 @@ static uint32_t code_rank(cutter *s, pmesh_codec *c, pmesh_coder *coder,
             *expected = rank == 0 && odds >= GOOD_ODDS;
             break;
         }
-        list->cost[best] = TAKEN;
+        take(list, best);
         sum -= share;
-        best = cheapest(list, least_cost(list));
+        best = lanes_first_least(list->cost, list->count, &least);
     }
     return best;
 }

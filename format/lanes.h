@@ -50,4 +50,24 @@ static inline lanes lanes_size(lanes a)
     return lanes_max(a, lanes_sub(lanes_of(0), a));
 }
 
+/* The place of the first of the least of `count` numbers, which are a multiple
+ * of LANES below 2^15 and not all INT16_MAX. Nobody can tell where it is: each
+ * lane keeps its own, and there is no branch. */
+static inline uint32_t lanes_first_least(const int16_t *x, uint32_t count,
+                                         int16_t *least)
+{
+    static const int16_t lane[LANES] = { 0, 1, 2, 3, 4, 5, 6, 7 };
+    lanes low = lanes_load(x), at = lanes_load(lane), here = at;
+    for (uint32_t k = LANES; k < count; k += LANES) {
+        const lanes next = lanes_load(x + k);
+        here = lanes_add(here, lanes_of(LANES));
+        at = lanes_max(at, lanes_and(lanes_less(next, low), here));
+        low = lanes_min(low, next);
+    }
+    *least = (int16_t)lanes_least(low);
+    const lanes more = lanes_less(lanes_of(*least), low);
+    at = lanes_max(at, lanes_and(more, lanes_of(INT16_MAX)));
+    return (uint32_t)lanes_least(at);
+}
+
 #endif

@@ -82,12 +82,10 @@ static inline lanes lanes_half_unsigned(lanes a)
     PMESH_EIGHT((uint16_t)a.x[i] >> 1);
 }
 
-static inline int lanes_find(lanes a, int16_t x)
+/* All bits where a < b, none elsewhere. */
+static inline lanes lanes_less(lanes a, lanes b)
 {
-    int i = 0;
-    while (i < 8 && a.x[i] != x)
-        i++;
-    return i;
+    PMESH_EIGHT(a.x[i] < b.x[i] ? -1 : 0);
 }
 
 static inline lanes lanes_high(lanes a, lanes b)

@@ -91,18 +91,10 @@ static inline int lanes_least(lanes a)
     return (int16_t)_mm_extract_epi16(a, 0);
 }
 
-/* The first lane that holds x, or LANES. */
-static inline int lanes_find(lanes a, int16_t x)
+/* All bits where a < b, none elsewhere. */
+static inline lanes lanes_less(lanes a, lanes b)
 {
-    const int found = _mm_movemask_epi8(_mm_cmpeq_epi16(a, _mm_set1_epi16(x)));
-#if defined(__GNUC__)
-    return __builtin_ctz((unsigned)found | 0x10000) / 2;
-#else
-    int i = 0;
-    while (i < 8 && !(found >> 2 * i & 1))
-        i++;
-    return i;
-#endif
+    return _mm_cmplt_epi16(a, b);
 }
 
 /* Modulo 2^16. */

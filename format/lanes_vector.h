@@ -79,12 +79,9 @@ static inline lanes lanes_half_unsigned(lanes a)
     return (lanes)((pmesh_ulanes)a >> (pmesh_ulanes)lanes_of(1));
 }
 
-static inline int lanes_find(lanes a, int16_t x)
+static inline lanes lanes_less(lanes a, lanes b)
 {
-    int i = 0;
-    while (i < 8 && a[i] != x)
-        i++;
-    return i;
+    return (lanes)(a < b);
 }
 
 static inline lanes lanes_high(lanes a, lanes b)

@@ -24,16 +24,39 @@ static pmesh_status corrupt(pmesh_codec *c, const char *rule)
 /* The first vertices of `order` wait for their visit, or had it. */
 static void queue_vertex(pmesh_codec *c, uint32_t x)
 {
-    if (c->state[x] != PMESH_UNVISITED)
-        return;
-    c->state[x] = PMESH_UNVISITED | PMESH_QUEUED;
-    c->order[c->level_queued++] = x;
+    const uint8_t state = c->state[x];
+    const bool is_new = state == PMESH_UNVISITED; /* nobody can tell */
+    c->order[c->level_queued] = x;
+    c->level_queued += is_new;
+    c->state[x] = (uint8_t)(state | is_new * PMESH_QUEUED);
 }
 
-static void queue_ring(pmesh_codec *c, const pmesh_ring *ring)
+/* How many neighbours there are of each state: counts of 12 bits, more than
+ * rings ever need, in a register, as they are wanted at once. */
+enum { COUNT_BITS = 12 };
+
+static uint64_t count_one(const pmesh_codec *c, uint32_t x)
 {
-    for (uint32_t i = 0; i < ring->count; i++)
-        queue_vertex(c, ring->vertex[i]);
+    return UINT64_C(1) << COUNT_BITS * pmesh_state(c, x);
+}
+
+static uint32_t counted(uint64_t counts, pmesh_visit state)
+{
+    return (uint32_t)(counts >> COUNT_BITS * state) & ((1u << COUNT_BITS) - 1);
+}
+
+/* Queues a ring and counts it. */
+static uint64_t queue_ring(pmesh_codec *c, const pmesh_ring *ring)
+{
+    uint64_t counts = 0;
+    for (uint32_t i = 0; i < ring->count; i++) {
+        const uint32_t x = ring->vertex[i];
+        counts += count_one(c, x);
+        queue_vertex(c, x);
+        pmesh_prefetch(&c->mesh.position[x]); /* a cut will want both */
+        pmesh_prefetch(&c->near[x]);
+    }
+    return counts;
 }
 
 /* The members of v's rings, of any size. */
@@ -94,20 +117,15 @@ static uint32_t at_most(uint32_t value, uint32_t limit)
     return value < limit ? value : limit;
 }
 
-/* Whether v splits is likely told by which of its neighbours did. */
-static uint32_t flag_context(const pmesh_codec *c, const pmesh_ring *ring,
-                             uint32_t rings)
+/* Whether v splits is likely told by which of its neighbours did; `size`: how
+ * many there are, and ghosts. */
+static uint32_t flag_context(uint64_t seen, uint32_t size)
 {
-    uint32_t seen[PMESH_GHOST + 1] = { 0 }, size = 0;
-    for (uint32_t k = 0; k < rings; k++) {
-        for (uint32_t i = 0; i < ring[k].count; i++)
-            seen[pmesh_state(c, ring[k].vertex[i])]++;
-        size += ring[k].count + ring[k].open;
-    }
     const uint32_t valence = size < 4 ? 0 : at_most(size - 3, 7);
-    const uint32_t split = at_most(seen[PMESH_PARENT] + seen[PMESH_NEWBORN], 5);
-    const uint32_t kept = at_most(seen[PMESH_KEPT], 4);
-    const uint32_t unvisited = at_most(seen[PMESH_UNVISITED], 6);
+    const uint32_t split = at_most(
+        counted(seen, PMESH_PARENT) + counted(seen, PMESH_NEWBORN), 5);
+    const uint32_t kept = at_most(counted(seen, PMESH_KEPT), 4);
+    const uint32_t unvisited = at_most(counted(seen, PMESH_UNVISITED), 6);
     return ((valence * 6 + split) * 5 + kept) * 7 + unvisited;
 }
 
@@ -179,7 +197,10 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
     pmesh_cut cut = { 0, 0 };
     if (oracle)
         oracle->cut(oracle->user, v, ring, &cut);
-    pmesh_cut_code(c, coder, v, ring, &cut);
+    if (coder->relay)
+        coder->relay->cut(coder->relay->user, c, v, ring, &cut);
+    else
+        pmesh_cut_code(c, coder, v, ring, &cut);
 
     const uint32_t faces =
         cut.first != PMESH_NONE && cut.end != PMESH_NONE ? 2 : 1;
@@ -212,24 +233,27 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
 }
 
 static bool code_flag(pmesh_codec *c, pmesh_coder *coder,
-                      const pmesh_oracle *oracle, uint32_t v,
-                      const pmesh_ring *ring, uint32_t rings)
+                      const pmesh_oracle *oracle, uint32_t v, uint64_t seen,
+                      uint32_t size)
 {
-    pmesh_bit *flag = &c->models.flag[flag_context(c, ring, rings)];
-    return pmesh_code_bit(coder, flag,
-                          oracle && oracle->splits(oracle->user, v));
+    pmesh_bit *flag = &c->models.flag[flag_context(seen, size)];
+    const bool splits = oracle && oracle->splits(oracle->user, v);
+    if (!coder->relay)
+        return pmesh_code_bit(coder, flag, splits);
+    coder->relay->flag(coder->relay->user, flag, splits);
+    return splits;
 }
 
 static pmesh_status visit(pmesh_codec *c, pmesh_coder *coder,
                           const pmesh_oracle *oracle, uint32_t v)
 {
     pmesh_ring ring;
-    if (!pmesh_ring_gather(&c->mesh, v, &ring)) {
+    if (!pmesh_codec_ring(c, v, &ring)) {
         queue_rings(c, v);
         return PMESH_OK;
     }
-    queue_ring(c, &ring);
-    return code_flag(c, coder, oracle, v, &ring, 1)
+    const uint64_t seen = queue_ring(c, &ring);
+    return code_flag(c, coder, oracle, v, seen, ring.count + ring.open)
                ? split(c, coder, oracle, v, &ring)
                : PMESH_OK;
 }
@@ -238,9 +262,14 @@ static pmesh_status visit_joined(pmesh_codec *c, pmesh_coder *coder,
                                  const pmesh_oracle *oracle, uint32_t v)
 {
     pmesh_fans fans;
+    uint64_t seen = 0;
     queue_rings(c, v);
-    return pmesh_fans_gather(&c->mesh, v, &fans) &&
-                   code_flag(c, coder, oracle, v, fans.ring, fans.count)
+    if (!pmesh_fans_gather(&c->mesh, v, &fans))
+        return PMESH_OK;
+    for (uint32_t k = 0; k < fans.count; k++)
+        for (uint32_t i = 0; i < fans.ring[k].count; i++)
+            seen += count_one(c, fans.ring[k].vertex[i]);
+    return code_flag(c, coder, oracle, v, seen, fans.members)
                ? pmesh_join_split(c, coder, oracle, v, &fans)
                : PMESH_OK;
 }
@@ -266,29 +295,36 @@ static int32_t clamp(int64_t value, int32_t limit)
     return value < 0 ? 0 : value > limit ? limit : (int32_t)value;
 }
 
-/* NULL if the ring is too large. */
-static const pmesh_site *find_site(const pmesh_codec *c, uint32_t v,
-                                   uint32_t partner, pmesh_site *site)
+/* Up to PMESH_ABREAST children from u on, and their parents. */
+static uint32_t next_family(const pmesh_codec *c, uint32_t u,
+                            uint32_t child[PMESH_ABREAST],
+                            uint32_t parent[PMESH_ABREAST])
 {
-    return pmesh_site_find(c, v, partner, site) ? site : NULL;
-}
-
-static const pmesh_ring *ring_of(const pmesh_site *site)
-{
-    return site ? &site->ring : NULL;
+    const uint32_t end = c->block.vertex + c->block.vertex_count;
+    uint32_t count = 0;
+    for (; u < end && count < PMESH_ABREAST; u++, count++) {
+        child[count] = u;
+        parent[count] = c->mesh.parent[u];
+    }
+    return count;
 }
 
 /* Connectivity is complete now: a better guess where every child will be. */
 static void guess_positions(pmesh_codec *c)
 {
-    const uint32_t begin = c->block.vertex;
-    for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        pmesh_ring ring;
-        int32_t position[3];
-        if (!pmesh_ring_gather(&c->mesh, u, &ring))
-            continue;
-        pmesh_guess(c, u, &ring, position);
-        pmesh_place(c, u, &ring, position);
+    uint32_t child[PMESH_ABREAST], parent[PMESH_ABREAST], count;
+    pmesh_site site[PMESH_ABREAST];
+    for (uint32_t u = c->block.vertex;
+         (count = next_family(c, u, child, parent)) > 0; u += count) {
+        pmesh_sites_rings(c, child, count, site);
+        for (uint32_t i = 0; i < count; i++) {
+            const pmesh_ring *ring = &site[i].ring;
+            int32_t position[3];
+            if (ring->count == 0)
+                continue;
+            pmesh_guess(c, u + i, ring, position);
+            pmesh_place(c, u + i, ring, position);
+        }
     }
 }
 
@@ -321,39 +357,50 @@ static bool code_position(pmesh_codec *c, pmesh_coder *coder,
 }
 
 static bool code_moved_parent(pmesh_codec *c, pmesh_coder *coder,
-                              const pmesh_oracle *oracle, uint32_t u)
+                              const pmesh_oracle *oracle, uint32_t u,
+                              const pmesh_site *site)
 {
     pmesh_mesh *m = &c->mesh;
     const uint32_t v = m->parent[u];
     const int32_t *before = c->unsplit[u - c->block.vertex];
     int32_t mirrored[3];
-    pmesh_site space;
-    const pmesh_site *site = find_site(c, v, u, &space);
     pmesh_prediction p;
     for (int k = 0; k < 3; k++) /* parent and child part about evenly */
         mirrored[k] =
             clamp(2 * (int64_t)before[k] - m->position[u][k], c->bounds[k]);
     pmesh_predict(c, &c->place[1], v, site, mirrored, u + 1, &p);
-    return code_position(c, coder, oracle, &c->place[1], v, ring_of(site), &p);
+    return code_position(c, coder, oracle, &c->place[1], v, &site->ring, &p);
+}
+
+static bool code_child(pmesh_codec *c, pmesh_coder *coder,
+                       const pmesh_oracle *oracle, uint32_t u,
+                       const pmesh_site *site)
+{
+    const pmesh_mesh *m = &c->mesh;
+    const int32_t *parent = m->position[m->parent[u]];
+    pmesh_prediction p;
+    pmesh_predict(c, &c->place[0], u, site, parent, u, &p);
+    if (!code_position(c, coder, oracle, &c->place[0], u, &site->ring, &p))
+        return false;
+    c->importance[u - c->block.vertex] = importance_of(m, u, parent, &p);
+    return true;
 }
 
 static pmesh_status code_positions(pmesh_codec *c, pmesh_coder *coder,
                                    const pmesh_oracle *oracle)
 {
-    pmesh_mesh *m = &c->mesh;
-    const uint32_t begin = c->block.vertex;
-    for (uint32_t u = begin; u < begin + c->block.vertex_count; u++) {
-        const uint32_t v = m->parent[u];
-        pmesh_site space;
-        const pmesh_site *site = find_site(c, u, v, &space);
-        pmesh_prediction p;
-        pmesh_predict(c, &c->place[0], u, site, m->position[v], u, &p);
-        if (!code_position(c, coder, oracle, &c->place[0], u, ring_of(site),
-                           &p))
-            return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
-        c->importance[u - begin] = importance_of(m, u, m->position[v], &p);
-        if (c->sizes.moves && !code_moved_parent(c, coder, oracle, u))
-            return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
+    uint32_t child[PMESH_ABREAST], parent[PMESH_ABREAST], count;
+    pmesh_site site[PMESH_ABREAST], moved[PMESH_ABREAST];
+    for (uint32_t u = c->block.vertex;
+         (count = next_family(c, u, child, parent)) > 0; u += count) {
+        pmesh_sites_find(c, child, parent, count, site);
+        if (c->sizes.moves)
+            pmesh_sites_find(c, parent, child, count, moved);
+        for (uint32_t i = 0; i < count; i++)
+            if (!code_child(c, coder, oracle, u + i, &site[i]) ||
+                (c->sizes.moves &&
+                 !code_moved_parent(c, coder, oracle, u + i, &moved[i])))
+                return corrupt(c, "SPEC 6.5: a vertex leaves the bounds");
     }
     return PMESH_OK;
 }
@@ -364,6 +411,10 @@ static void count_part(pmesh_codec *c, const pmesh_coder *coder, int part,
 {
     if (!coder->encoding)
         return;
+    if (coder->relay) {
+        coder->relay->part(coder->relay->user, part);
+        return;
+    }
     c->part_size[part] += coder->out->size - *written;
     *written = coder->out->size;
 }

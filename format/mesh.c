@@ -36,6 +36,58 @@ bool pmesh_ring_gather_fan(const pmesh_mesh *m, uint32_t start,
     return true;
 }
 
+/* Of a closed ring: from the first one to the left and to the right. */
+static bool list_closed(const pmesh_mesh *m, pmesh_ring *ring)
+{
+    const uint32_t n = ring->count;
+    uint32_t left = ring->edge[0], right = left;
+    for (uint32_t i = 1; i <= n / 2; i++) {
+        right = m->twin[right];
+        left = m->twin[pmesh_prev(left)];
+        if (left == PMESH_NONE || right == PMESH_NONE)
+            return false;
+        right = pmesh_next(right);
+        ring->edge[n - i] = right;
+        ring->edge[i] = left;
+    }
+    return true;
+}
+
+static bool list_open(const pmesh_mesh *m, pmesh_ring *ring)
+{
+    uint32_t h = ring->edge[0];
+    for (uint32_t i = 1; i < ring->face_count; i++) {
+        h = m->twin[pmesh_prev(h)];
+        if (h == PMESH_NONE)
+            return false;
+        ring->edge[i] = h;
+    }
+    ring->vertex[ring->face_count] = m->vertex[pmesh_prev(h)];
+    return true;
+}
+
+bool pmesh_ring_list_edges(const pmesh_mesh *m, uint32_t v, uint32_t count,
+                           pmesh_ring *ring)
+{
+    const uint32_t start = m->first[v];
+    ring->open = m->twin[start] == PMESH_NONE;
+    ring->count = count;
+    ring->face_count = count - ring->open;
+    ring->edge[0] = start;
+    return count + ring->open <= PMESH_MAX_RING &&
+           (ring->open ? list_open(m, ring) : list_closed(m, ring));
+}
+
+bool pmesh_ring_gather_known(const pmesh_mesh *m, uint32_t v, uint32_t count,
+                             pmesh_ring *ring)
+{
+    if (!pmesh_ring_list_edges(m, v, count, ring))
+        return false;
+    for (uint32_t i = 0; i < ring->face_count; i++)
+        ring->vertex[i] = m->vertex[pmesh_next(ring->edge[i])];
+    return true;
+}
+
 bool pmesh_cut_legal(const pmesh_ring *ring, pmesh_cut cut)
 {
     const uint32_t n = ring->count;

@@ -54,12 +54,12 @@ typedef struct pmesh_mesh {
 
 static inline uint32_t pmesh_next(uint32_t h)
 {
-    return h % 3 == 2 ? h - 2 : h + 1;
+    return h + 1 - 3 * (h % 3 >> 1);
 }
 
 static inline uint32_t pmesh_prev(uint32_t h)
 {
-    return h % 3 == 0 ? h + 2 : h - 1;
+    return h + 2 - 3 * ((h % 3 + 1) >> 1);
 }
 
 /* The next half-edge of the same start, counter-clockwise; PMESH_NONE behind
@@ -101,6 +101,15 @@ typedef struct pmesh_ring {
 /* The ring of v's first fan. False, with the ring unusable, if neighbours and
  * ghost exceed the bound. */
 bool pmesh_ring_gather(const pmesh_mesh *m, uint32_t v, pmesh_ring *ring);
+
+/* The same of a vertex with one fan of which the number of neighbours is known:
+ * it goes both ways at once, and what follows waits for neither. */
+bool pmesh_ring_gather_known(const pmesh_mesh *m, uint32_t v, uint32_t count,
+                             pmesh_ring *ring);
+
+/* Its half-edges alone. */
+bool pmesh_ring_list_edges(const pmesh_mesh *m, uint32_t v, uint32_t count,
+                           pmesh_ring *ring);
 
 /* The same of the fan that starts at half-edge `start`. */
 bool pmesh_ring_gather_fan(const pmesh_mesh *m, uint32_t start,

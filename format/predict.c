@@ -31,66 +31,11 @@ static scale make_scale(int shift)
     return (scale){ up, up - shift, SUM_LIMIT >> up };
 }
 
-static inline int32_t scaled(const scale *by, int32_t value)
+static inline quads scaled(const scale *by, quads x)
 {
-    const int32_t x = value >> by->down;
-    return (x < -by->limit  ? -by->limit
-            : x > by->limit ? by->limit
-                            : x) *
-           (1 << by->up);
-}
-
-/* ---- sites ------------------------------------------------------------- */
-
-static uint32_t index_of(const pmesh_ring *ring, uint32_t vertex)
-{
-    uint32_t i = 0;
-    while (i + 1 < ring->count && ring->vertex[i] != vertex)
-        i++;
-    return i;
-}
-
-/* Member `steps` places behind the partner. */
-static uint32_t behind_partner(const pmesh_site *s, uint32_t steps)
-{
-    const uint32_t i = s->partner + steps, n = s->ring.count;
-    return i < n ? i : i - n;
-}
-
-/* What lies opposite of x in the ring of its neighbour y, where half-edge h
- * leads from x to y: two vertices, the same twice if one does. */
-static void look_beyond(const pmesh_codec *c, uint32_t h, uint32_t y,
-                        uint32_t beyond[2])
-{
-    const pmesh_mesh *m = &c->mesh;
-    const uint32_t n = c->near[y].degree;
-    uint32_t now = m->twin[h], before = now;
-    if (n > PMESH_MAX_RING || now == PMESH_NONE)
-        return;
-    for (uint32_t i = 0; i < (n + 1) / 2; i++) {
-        before = now;
-        now = pmesh_turn_left(m, now);
-        if (now == PMESH_NONE)
-            return;
-    }
-    beyond[1] = m->vertex[pmesh_next(now)];
-    beyond[0] = n % 2 ? m->vertex[pmesh_next(before)] : beyond[1];
-}
-
-bool pmesh_site_find(const pmesh_codec *c, uint32_t x, uint32_t partner,
-                     pmesh_site *s)
-{
-    const pmesh_ring *ring = &s->ring;
-    if (!pmesh_ring_gather(&c->mesh, x, &s->ring))
-        return false;
-    s->partner = index_of(ring, partner);
-    const uint32_t i[2] = { s->partner, behind_partner(s, ring->count / 2) };
-    for (int t = 0; t < 2; t++) {
-        s->beyond[t][0] = s->beyond[t][1] = PMESH_NONE;
-        if (i[t] < ring->face_count)
-            look_beyond(c, ring->edge[i[t]], ring->vertex[i[t]], s->beyond[t]);
-    }
-    return true;
+    const quads limit = quads_of(by->limit), low = quads_of(-by->limit);
+    x = quads_min(quads_max(quads_right(x, by->down), low), limit);
+    return quads_left(x, by->up);
 }
 
 /* ---- guesses ------------------------------------------------------------ */
@@ -136,21 +81,20 @@ void pmesh_guess(const pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
 
 /* ---- terms, from the ring's mean ---------------------------------------- */
 
+/* Member `steps` places behind the partner. */
+static uint32_t behind_partner(const pmesh_site *s, uint32_t steps)
+{
+    const uint32_t i = s->partner + steps, n = s->ring.count;
+    return i < n ? i : i - n;
+}
+
 /* What a walk over the ring's members tells. */
 typedef struct walk {
     uint32_t unknown, irregular;
     /* Mean over the ring of (mean of a member's other neighbours - member): how
      * the surface bends around here. */
-    int32_t bend[3];
+    int32_t bend[QUADS];
 } walk;
-
-/* As scaled(), and shared by `count`. */
-static inline quads shared(const scale *by, quads x, uint32_t count)
-{
-    const quads limit = quads_of(by->limit), low = quads_of(-by->limit);
-    x = quads_min(quads_max(quads_right(x, by->down), low), limit);
-    return quads_high(quads_left(x, by->up), (uint32_t)pmesh_reciprocal[count]);
-}
 
 /* Sums of positions relative to `base` fit 32 bits. */
 static void walk_ring(const pmesh_codec *c, const pmesh_star *s,
@@ -172,45 +116,41 @@ static void walk_ring(const pmesh_codec *c, const pmesh_star *s,
             continue;
         const quads all = quads_sub(pmesh_near_load(near),
                                     quads_add(at, quads_times(from, others)));
-        sum = quads_add(sum, quads_sub(shared(by, all, others), s->row[i]));
+        const quads share = quads_high(scaled(by, all),
+                                       (uint32_t)pmesh_reciprocal[others]);
+        sum = quads_add(sum, quads_sub(share, s->row[i]));
         used++;
     }
     quads_store(total, sum);
     w->unknown = unknown;
     w->irregular = irregular;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < QUADS; k++)
         w->bend[k] = used ? pmesh_share(total[k], used) : 0;
 }
 
 /* Straight on over member y: twice the member less what lies beyond. */
-static void straight_on(const pmesh_codec *c, const pmesh_star *s,
-                        const scale *by, uint32_t y, const uint32_t beyond[2],
-                        const int32_t base[3], int32_t out[3])
+static quads straight_on(const pmesh_codec *c, const scale *by, uint32_t y,
+                         const uint32_t beyond[2], quads base, quads mean)
 {
-    const pmesh_mesh *m = &c->mesh;
+    const int32_t(*at)[3] = (const int32_t(*)[3])c->mesh.position;
     if (beyond[0] == PMESH_NONE)
-        return;
-    const int32_t *near = m->position[y];
-    const int32_t *far = m->position[beyond[0]], *far2 = m->position[beyond[1]];
-    for (int k = 0; k < 3; k++) {
-        const int32_t twice = 4 * near[k] - far[k] - far2[k] - 2 * base[k];
-        out[k] = (scaled(by, twice) >> 1) - s->mean[k];
-    }
+        return quads_of(0);
+    const quads far = quads_add(quads_triple(at[beyond[0]]),
+                                quads_triple(at[beyond[1]]));
+    const quads near = quads_sub(quads_left(quads_triple(at[y]), 2), far);
+    const quads twice = quads_sub(near, quads_left(base, 1));
+    return quads_sub(quads_right(scaled(by, twice), 1), mean);
 }
 
 /* Limits the terms and finds their heights. */
-static void finish_terms(const pmesh_star *s,
-                         int32_t term[PMESH_FIT_TERMS + 1][3],
+static void finish_terms(const pmesh_star *s, const quads term[LANES],
                          pmesh_prediction *p)
 {
     const lanes low = lanes_of(-TERM_LIMIT), high = lanes_of(TERM_LIMIT);
     const lanes none = lanes_of(0);
     lanes t[3], n[3];
+    lanes_columns(term, t);
     for (int k = 0; k < 3; k++) {
-        int32_t along[LANES];
-        for (int i = 0; i < LANES; i++)
-            along[i] = term[i][k];
-        t[k] = lanes_within(quads_load(along), quads_load(along + QUADS));
         t[k] = lanes_min(lanes_max(t[k], low), high);
         n[k] = lanes_of((int16_t)s->normal[k]);
         lanes_store(p->term[k], t[k]);
@@ -227,23 +167,25 @@ static void make_terms(const pmesh_codec *c, const pmesh_star *s,
                        const pmesh_site *site, const scale *by, const walk *w,
                        pmesh_prediction *p)
 {
-    const pmesh_ring *ring = &site->ring;
+    const uint32_t *member = site->ring.vertex;
     const uint32_t n = s->count, far = behind_partner(site, n / 2);
     const uint32_t far2 = behind_partner(site, (n + 1) / 2);
     /* Of an open ring the ends say more than what lies opposite. */
     const uint32_t a = s->open ? 0 : far, b = s->open ? n - 1 : far2;
-    int32_t term[PMESH_FIT_TERMS + 1][3];
-    for (int k = 0; k < 3; k++) {
-        const int16_t *point = s->point[k];
-        term[0][k] = -s->mean[k]; /* the partner is the base point */
-        term[1][k] = ((point[a] + point[b]) >> 1) - s->mean[k];
-        term[2][k] = w->bend[k];
-    }
-    pmesh_star_centres(s, term[3], term[4]);
-    memset(term[5], 0, 3 * sizeof term[5]);
-    straight_on(c, s, by, ring->vertex[site->partner], site->beyond[0], p->base,
-                term[5]);
-    straight_on(c, s, by, ring->vertex[far], site->beyond[1], p->base, term[6]);
+    const quads mean = quads_triple(s->mean), base = quads_triple(p->base);
+    int32_t area[QUADS], spokes[QUADS];
+    quads term[LANES];
+    pmesh_star_centres(s, area, spokes);
+    term[0] = quads_sub(quads_of(0), mean); /* the partner is the base point */
+    term[1] = quads_right(quads_add(s->row[a], s->row[b]), 1);
+    term[1] = quads_sub(term[1], mean);
+    term[2] = quads_load(w->bend);
+    term[3] = quads_load(area);
+    term[4] = quads_load(spokes);
+    term[5] = straight_on(c, by, member[site->partner], site->beyond[0], base,
+                          mean);
+    term[6] = straight_on(c, by, member[far], site->beyond[1], base, mean);
+    term[7] = quads_of(0);
     finish_terms(s, term, p);
 }
 
@@ -341,7 +283,7 @@ void pmesh_predict(pmesh_codec *c, pmesh_place_models *models, uint32_t x,
 {
     pmesh_star s;
     walk w;
-    if (!site) {
+    if (site->ring.count == 0) {
         predict_blindly(partner_position, out);
         return;
     }
@@ -526,7 +468,7 @@ void pmesh_place(pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
     if (!(by[0] | by[1] | by[2]))
         return;
     memcpy(at, position, sizeof *c->mesh.position);
-    if (!ring || c->mesh.fan) {
+    if (ring->count == 0 || c->mesh.fan) {
         shift_neighbours(c, x, by);
         return;
     }

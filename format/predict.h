@@ -12,7 +12,7 @@
 #ifndef PMESH_PREDICT_H
 #define PMESH_PREDICT_H
 
-#include "format/codec.h"
+#include "format/site.h"
 
 typedef struct pmesh_prediction {
     int64_t position[3]; /* 1/16 grid steps */
@@ -32,24 +32,11 @@ typedef struct pmesh_prediction {
     int32_t height[PMESH_FIT_TERMS + 1];  /* they should have added up to */
 } pmesh_prediction;
 
-/* Where a prediction is made: what it needs of connectivity. */
-typedef struct pmesh_site {
-    pmesh_ring ring;
-    uint32_t partner; /* place in the ring; the last if it is not there */
-    /* Opposite of x in the rings of the partner and of the member that lies
-     * opposite of the partner: two vertices, maybe the same, or PMESH_NONE. */
-    uint32_t beyond[2][2];
-} pmesh_site;
-
-/* False if the ring of x is too large. */
-bool pmesh_site_find(const pmesh_codec *c, uint32_t x, uint32_t partner,
-                     pmesh_site *s);
-
 /* A guess at the position of x while its neighbours' are guesses, too. */
 void pmesh_guess(const pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
                  int32_t position[3]);
 
-/* The position of x at its site; NULL: the ring is too large. Of its partner,
+/* The position of x at its site, where the ring may be too large. Of its partner,
  * the other vertex of its split, this position is known; members of the ring
  * from `provisional` on (by number) have no final position yet; no partner is.
  */
@@ -62,8 +49,8 @@ void pmesh_predict(pmesh_codec *c, pmesh_place_models *models, uint32_t x,
 void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3],
                          uint32_t along, uint32_t across);
 
-/* Moves x, whose ring is given (NULL: too large), to a position and corrects
- * its neighbours' sums. */
+/* Moves x, whose ring is given (no members: too large), to a position and
+ * corrects its neighbours' sums. */
 void pmesh_place(pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
                  const int32_t position[3]);
 

@@ -51,30 +51,41 @@ static void sort_children(pmesh_codec *c)
     memcpy(c->child_order, source, n * sizeof *source);
 }
 
-/* Reorders `count` items of `size` <= MOST_SIZE bytes: item i comes from
- * order[i]. In place, cycle by cycle; which places are done is marked in the
- * order itself, which is afterwards as before. */
-static inline void permute(void *items, uint32_t count, uint32_t *order,
-                           size_t size)
+/* Reorders `count` items of `size` bytes: item i comes from order[i]. By columns
+ * of `unit` <= 4 bytes, by way of the scratch: no copy waits for another. */
+static inline void permute(pmesh_codec *c, void *items, uint32_t count,
+                           const uint32_t *order, size_t size, size_t unit)
 {
-    enum { MOST_SIZE = 2 * PMESH_MAX_ATTRIBUTES * PMESH_MAX_COMPONENTS };
-    const uint32_t done = UINT32_C(1) << 31;
-    uint8_t *at = (uint8_t *)items, first[MOST_SIZE];
-    for (uint32_t i = 0; i < count; i++) {
-        uint32_t to = i, from = order[i];
-        if (from & done)
-            continue;
-        memcpy(first, at + i * size, size);
-        for (; from != i; from = order[to]) {
-            memcpy(at + to * size, at + from * size, size);
-            order[to] = from | done;
-            to = from;
-        }
-        memcpy(at + to * size, first, size);
-        order[to] = i | done;
+    uint8_t *at = (uint8_t *)items, *spare = (uint8_t *)c->scratch;
+    for (size_t k = 0; k < size; k += unit) {
+        for (uint32_t i = 0; i < count; i++)
+            memcpy(spare + i * unit, at + order[i] * size + k, unit);
+        for (uint32_t i = 0; i < count; i++)
+            memcpy(at + i * size + k, spare + i * unit, unit);
     }
-    for (uint32_t i = 0; i < count; i++)
-        order[i] &= ~done;
+}
+
+/* `each` numbers make up an item. */
+static inline void permute_numbers(pmesh_codec *c, uint32_t *items,
+                                   uint32_t count, const uint32_t *order,
+                                   size_t each)
+{
+    permute(c, items, count, order, each * sizeof *items, sizeof *items);
+}
+
+static void rename_corners(pmesh_codec *c, uint32_t v, uint32_t name)
+{
+    pmesh_mesh *m = &c->mesh;
+    uint32_t start = m->first[v];
+    pmesh_ring ring;
+    if (!m->fan && pmesh_ring_list_edges(m, v, c->near[v].degree, &ring)) {
+        for (uint32_t i = 0; i < ring.face_count; i++)
+            m->vertex[ring.edge[i]] = name;
+        return;
+    }
+    for (uint32_t h = start; h != PMESH_NONE;
+         h = pmesh_corner_next(m, &start, h))
+        m->vertex[h] = name;
 }
 
 /* Names the children by rank in every half-edge that starts at them. */
@@ -85,18 +96,14 @@ static void rename_children(pmesh_codec *c)
     uint32_t *rank = c->scratch;
     for (uint32_t i = 0; i < n; i++)
         rank[c->child_order[i]] = i;
-    for (uint32_t k = 0; k < n; k++) { /* in coding order lie the faces */
-        uint32_t start = m->first[first + k];
-        for (uint32_t h = start; h != PMESH_NONE;
-             h = pmesh_corner_next(m, &start, h))
-            m->vertex[h] = first + rank[k];
-    }
-    permute(m->first + first, n, c->child_order, sizeof *m->first);
-    permute(m->parent + first, n, c->child_order, sizeof *m->parent);
-    permute(c->near + first, n, c->child_order, sizeof *c->near);
-    permute(m->position + first, n, c->child_order, sizeof *m->position);
+    for (uint32_t k = 0; k < n; k++) /* in coding order lie the faces */
+        rename_corners(c, first + k, first + rank[k]);
+    permute_numbers(c, m->first + first, n, c->child_order, 1);
+    permute_numbers(c, m->parent + first, n, c->child_order, 1);
+    permute(c, c->near + first, n, c->child_order, sizeof *c->near, 4);
+    permute(c, m->position + first, n, c->child_order, sizeof *m->position, 4);
     if (c->sizes.moves)
-        permute(c->unsplit, n, c->child_order, sizeof *c->unsplit);
+        permute(c, c->unsplit, n, c->child_order, sizeof *c->unsplit, 4);
 }
 
 static void mark_faces(pmesh_codec *c, uint32_t vertex, uint32_t faces)
@@ -127,7 +134,7 @@ static void order_faces(pmesh_codec *c)
 
 /* Where the fans of the corners of new faces start: such a vertex may have
  * several, and several such corners, but is done once. */
-static void rename_starts(pmesh_codec *c, const uint32_t *now)
+static void rename_fans(pmesh_codec *c, const uint32_t *now)
 {
     enum { DONE = 0x80 }; /* beside the state */
     pmesh_mesh *m = &c->mesh;
@@ -138,15 +145,46 @@ static void rename_starts(pmesh_codec *c, const uint32_t *now)
         if (c->state[v] & DONE)
             continue;
         c->state[v] |= DONE;
-        while (at && *at != PMESH_NONE) {
+        while (*at != PMESH_NONE) {
             const uint32_t old = *at;
             if (old >= edge)
                 *at = 3 * now[(old - edge) / 3] + old % 3;
-            at = m->fan ? &m->fan[old] : NULL;
+            at = &m->fan[old];
         }
     }
     for (uint32_t h = edge; h < edge + n; h++)
         c->state[m->vertex[h]] &= DONE - 1;
+}
+
+/* The same of vertices that have one: it starts at one of these corners or at
+ * an older one. New numbers are marked until all are given. */
+static void rename_starts(pmesh_codec *c, const uint32_t *now)
+{
+    const uint32_t given = UINT32_C(1) << 31;
+    pmesh_mesh *m = &c->mesh;
+    const uint32_t edge = 3 * c->block.face, n = 3 * c->block.face_count;
+    for (uint32_t h = edge; h < edge + n; h++) {
+        uint32_t *at = &m->first[m->vertex[h]];
+        const uint32_t to = 3 * now[(h - edge) / 3] + h % 3;
+        *at = *at == h ? to | given : *at;
+    }
+    for (uint32_t h = edge; h < edge + n; h++)
+        m->first[m->vertex[h]] &= ~given;
+}
+
+static void rename_twins(pmesh_codec *c, const uint32_t *now)
+{
+    pmesh_mesh *m = &c->mesh;
+    const uint32_t edge = 3 * c->block.face, n = 3 * c->block.face_count;
+    for (uint32_t h = edge; h < edge + n; h++) {
+        const uint32_t t = m->twin[h];
+        if (t == PMESH_NONE)
+            continue;
+        const bool inside = t >= edge; /* as often as not */
+        const uint32_t old = inside ? t : h;
+        const uint32_t to = 3 * now[(old - edge) / 3] + old % 3;
+        m->twin[inside ? h : t] = to;
+    }
 }
 
 static void rename_faces(pmesh_codec *c)
@@ -154,29 +192,24 @@ static void rename_faces(pmesh_codec *c)
     pmesh_mesh *m = &c->mesh;
     const uint32_t begin = c->block.face, n = c->block.face_count;
     const uint32_t edge = 3 * begin;
+    const uint32_t *order = c->face_order;
     uint32_t *now = c->scratch;
 
     for (uint32_t i = 0; i < n; i++)
-        now[c->face_order[i]] = begin + i;
-    rename_starts(c, now);
-    permute(m->vertex + edge, n, c->face_order, 3 * sizeof *m->vertex);
-    permute(m->twin + edge, n, c->face_order, 3 * sizeof *m->twin);
+        now[order[i]] = begin + i;
     if (m->fan)
-        permute(m->fan + edge, n, c->face_order, 3 * sizeof *m->fan);
+        rename_fans(c, now);
+    else
+        rename_starts(c, now);
+    rename_twins(c, now);
+    permute_numbers(c, m->vertex + edge, n, order, 3);
+    permute_numbers(c, m->twin + edge, n, order, 3);
+    if (m->fan)
+        permute_numbers(c, m->fan + edge, n, order, 3);
     if (m->wedge)
-        permute(m->wedge + edge, n, c->face_order, 3 * sizeof *m->wedge);
+        permute_numbers(c, m->wedge + edge, n, order, 3);
     if (m->material)
-        permute(m->material + begin, n, c->face_order, sizeof *m->material);
-
-    for (uint32_t h = edge; h < edge + 3 * n; h++) {
-        const uint32_t t = m->twin[h];
-        if (t == PMESH_NONE)
-            continue;
-        if (t >= edge)
-            m->twin[h] = 3 * now[t / 3 - begin] + t % 3;
-        else
-            m->twin[t] = h;
-    }
+        permute_numbers(c, m->material + begin, n, order, 1);
 }
 
 /* Gives w a number if it is the block's and has none. */
@@ -261,14 +294,15 @@ static void rename_wedges(pmesh_codec *c)
             if (h < 3 * b->face)
                 m->wedge[h] = renamed(number, b, m->wedge[h]);
     }
-    permute(m->wedge_vertex + b->wedge, b->wedge_count, c->wedge_order,
-            sizeof *m->wedge_vertex);
-    permute(m->wedge_parent + b->wedge, b->wedge_count, c->wedge_order,
-            sizeof *m->wedge_parent);
     for (uint32_t w = b->wedge; w < b->wedge + b->wedge_count; w++)
         m->wedge_parent[w] = renamed(number, b, m->wedge_parent[w]);
-    permute(m->value + (size_t)b->wedge * m->value_count, b->wedge_count,
-            c->wedge_order, m->value_count * sizeof *m->value);
+    permute_numbers(c, m->wedge_vertex + b->wedge, b->wedge_count,
+                    c->wedge_order, 1);
+    permute_numbers(c, m->wedge_parent + b->wedge, b->wedge_count,
+                    c->wedge_order, 1);
+    permute(c, m->value + (size_t)b->wedge * m->value_count, b->wedge_count,
+            c->wedge_order, m->value_count * sizeof *m->value,
+            sizeof *m->value);
 }
 
 void pmesh_block_rank(pmesh_codec *c)

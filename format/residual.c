@@ -46,18 +46,15 @@ static uint64_t code_size(pmesh_coder *coder, const pmesh_expectation *at,
         q += pmesh_code_number(coder, at->escape,
                                (uint32_t)(bin - PMESH_UNARY));
     uint64_t result = q;
-    for (unsigned i = shift; i-- > 0;) {
-        const unsigned bit = size >> i & 1;
-        unsigned got;
-        if (node < LOW_MODELS && shift - i <= 2) {
-            got = pmesh_code_bit(coder, &at->low[node], bit);
-            node = 1 + got;
-        } else {
-            got = pmesh_code_raw(coder, 1, bit);
-        }
+    unsigned i = shift;
+    for (; i > 0 && i + 2 > shift; i--) {
+        const unsigned got =
+            pmesh_code_bit(coder, &at->low[node], size >> (i - 1) & 1);
+        node = 1 + got;
         result = result << 1 | got;
     }
-    return result;
+    const uint32_t rest = (uint32_t)(size & (((uint64_t)1 << i) - 1));
+    return result << i | pmesh_code_raw(coder, i, rest);
 }
 
 int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_expectation *at,
@@ -65,7 +62,7 @@ int64_t pmesh_code_near(pmesh_coder *coder, const pmesh_expectation *at,
 {
     const int64_t center = (at->mean + FRACTION / 2) >> FRACTION_BITS;
     const int64_t part = at->mean - center * FRACTION; /* -8 .. 7 */
-    const unsigned lean = part < -2 ? 0 : part > 2 ? 2 : 1;
+    const unsigned lean = (unsigned)(part >= -2) + (part > 2);
     const int64_t r = value - center;
 
     if (!pmesh_code_bit_twice(coder, &at->any->zero[lean],
@@ -93,7 +90,7 @@ unsigned pmesh_how_far(int64_t off, unsigned scale)
 {
     const uint64_t size = (uint64_t)(off < 0 ? -off : off);
     const int over = size ? (int)half_octave(size) - (int)scale + 4 : 0;
-    return over < 2 ? 0 : over < 4 ? 1 : over < 6 ? 2 : PMESH_FAR - 1;
+    return (unsigned)(over >= 2) + (over >= 4) + (over >= 6);
 }
 
 unsigned pmesh_deviation_scale(uint64_t deviation, unsigned count)
@@ -222,6 +219,51 @@ static void learn_errors(const gauss *g, const int64_t d[3], pmesh_mean *along,
     learn(across, (uint64_t)(height < 0 ? -height : height), size, per);
 }
 
+/* The coordinates, by axes in coding order. */
+static inline bool code_axes(pmesh_coder *coder, pmesh_residual_model *m,
+                             const int32_t bounds[3], const int64_t mean[3],
+                             const int axis[3], gauss g, int32_t position[3])
+{
+    coordinate at = { .far = 0 };
+    for (int k = 0; k < 3; k++) {
+        const int a = axis[k];
+        at.place = (unsigned)k;
+        const int64_t variance = k < 2 ? gauss_variance(&g, k) : ONE;
+        at.mean = mean[a] + gauss_expect(&g, k, variance, &at.scale);
+        const int64_t value = code_coordinate(coder, m, &at, position[a]);
+        if (value < 0 || value > bounds[a])
+            return false;
+        position[a] = (int32_t)value;
+        at.far = pmesh_how_far(value * FRACTION - at.mean, at.scale);
+        if (k < 2)
+            gauss_given(&g, k, variance, value * FRACTION - at.mean);
+    }
+    return true;
+}
+
+void pmesh_residual_code_again(pmesh_coder *coder, const int32_t bounds[3],
+                               const pmesh_residual *r)
+{
+    int32_t position[3] = { r->position[0], r->position[1], r->position[2] };
+    int axis[3];
+    axis_order(r->normal, axis);
+    code_axes(coder, r->model, bounds, r->expected, axis,
+              gauss_make(r->normal, axis, r->along, r->across), position);
+}
+
+static void relay(pmesh_coder *coder, pmesh_residual_model *m,
+                  const pmesh_prediction *p, uint32_t along, uint32_t across,
+                  const int32_t position[3])
+{
+    pmesh_residual r = { .model = m, .along = along, .across = across };
+    for (int k = 0; k < 3; k++) {
+        r.expected[k] = p->position[k];
+        r.normal[k] = p->normal[k];
+        r.position[k] = position[k];
+    }
+    coder->relay->residual(coder->relay->user, &r);
+}
+
 bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder,
                          pmesh_place_models *m, pmesh_prediction *p,
                          int32_t position[3])
@@ -230,27 +272,18 @@ bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder,
     pmesh_mean *across = &m->across[p->rough][p->unknown];
     const uint32_t wide = expected(along, p->size);
     const uint32_t high = expected(across, p->size);
-    coordinate at = { .far = 0 };
     int axis[3];
-    int64_t d[3] = { 0, 0, 0 };
+    int64_t d[3];
 
     axis_order(p->normal, axis);
-    gauss g = gauss_make(p->normal, axis, wide, high);
-    for (int k = 0; k < 3; k++) {
-        const int a = axis[k];
-        at.place = (unsigned)k;
-        const int64_t variance = k < 2 ? gauss_variance(&g, k) : ONE;
-        at.mean = p->position[a] + gauss_expect(&g, k, variance, &at.scale);
-        const int64_t value =
-            code_coordinate(coder, &m->residual, &at, position[a]);
-        if (value < 0 || value > c->bounds[a])
-            return false;
-        position[a] = (int32_t)value;
-        d[k] = value * FRACTION - p->position[a];
-        at.far = pmesh_how_far(value * FRACTION - at.mean, at.scale);
-        if (k < 2)
-            gauss_given(&g, k, variance, value * FRACTION - at.mean);
-    }
+    const gauss g = gauss_make(p->normal, axis, wide, high);
+    if (coder->relay)
+        relay(coder, &m->residual, p, wide, high, position);
+    else if (!code_axes(coder, &m->residual, c->bounds, p->position, axis, g,
+                        position))
+        return false;
+    for (int k = 0; k < 3; k++)
+        d[k] = (int64_t)position[axis[k]] * FRACTION - p->position[axis[k]];
     learn_errors(&g, d, along, across, p->size);
     pmesh_predict_learn(p, position, wide, high);
     return true;

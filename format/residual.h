@@ -40,4 +40,16 @@ bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder,
                          pmesh_place_models *m, pmesh_prediction *p,
                          int32_t position[3]);
 
+/* The part of it that nothing but the stream and the model depends on. */
+typedef struct pmesh_residual {
+    pmesh_residual_model *model;
+    int64_t expected[3]; /* 1/16 steps */
+    int32_t normal[3], position[3];
+    uint32_t along, across; /* expected sizes */
+} pmesh_residual;
+
+/* Encoding: what a relay was given. */
+void pmesh_residual_code_again(pmesh_coder *coder, const int32_t bounds[3],
+                               const pmesh_residual *residual);
+
 #endif

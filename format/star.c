@@ -14,21 +14,36 @@ const int64_t pmesh_reciprocal[PMESH_MAX_RING + 2] = {
     R4(25), R4(29), R4(33), R4(37), R4(41), R4(45), R(49),
 };
 
-/* Newton's method from above: falls until it would not any more. The first
- * guess is (c + value / c) / 2, never below the root, with c = 3/4 of the power
- * of two above the root; rounding is made up for by 2. */
+/* 16 sqrt(x + 1/2), rounded down, from x = 64 on. */
+static const uint8_t root_of[] = {
+    128, 129, 130, 131, 132, 133, 134, 135, 136, 137, 138, 139, 139, 140, 141,
+    142, 143, 144, 145, 146, 147, 147, 148, 149, 150, 151, 152, 153, 153, 154,
+    155, 156, 157, 157, 158, 159, 160, 161, 161, 162, 163, 164, 165, 165, 166,
+    167, 168, 168, 169, 170, 171, 171, 172, 173, 174, 174, 175, 176, 177, 177,
+    178, 179, 179, 180, 181, 182, 182, 183, 184, 184, 185, 186, 186, 187, 188,
+    188, 189, 190, 190, 191, 192, 192, 193, 194, 194, 195, 196, 196, 197, 198,
+    198, 199, 200, 200, 201, 202, 202, 203, 203, 204, 205, 205, 206, 207, 207,
+    208, 208, 209, 210, 210, 211, 211, 212, 213, 213, 214, 214, 215, 216, 216,
+    217, 217, 218, 219, 219, 220, 220, 221, 221, 222, 223, 223, 224, 224, 225,
+    225, 226, 227, 227, 228, 228, 229, 229, 230, 231, 231, 232, 232, 233, 233,
+    234, 234, 235, 235, 236, 237, 237, 238, 238, 239, 239, 240, 240, 241, 241,
+    242, 242, 243, 243, 244, 245, 245, 246, 246, 247, 247, 248, 248, 249, 249,
+    250, 250, 251, 251, 252, 252, 253, 253, 254, 254, 255, 255,
+};
+
+/* One step of Newton's method from a root of eight digits, which is 2^-7 off at
+ * most: then 2^-15, that is 2, and never below the root. */
 uint32_t pmesh_isqrt(uint32_t value)
 {
     const unsigned half = (pmesh_bit_length(value) + 1) / 2;
-    uint32_t root =
-        (uint32_t)(((uint64_t)3 << half) >> 3) + (value >> half) * 2 / 3 + 2;
-    while (value) {
-        const uint32_t next = (root + value / root) / 2;
-        if (next >= root)
-            return root;
-        root = next;
-    }
-    return 0;
+    if (value < 4)
+        return value > 0;
+    const uint32_t top = half > 4 ? value >> (2 * half - 8)
+                                  : value << (8 - 2 * half); /* 64 .. 255 */
+    const uint32_t first = (uint32_t)root_of[top - 64] << 8 >> (16 - half);
+    uint32_t root = (first + value / first) / 2;
+    root -= (uint64_t)root * root > value;
+    return root - ((uint64_t)root * root > value);
 }
 
 static uint32_t padded(uint32_t count)
@@ -48,12 +63,12 @@ static uint32_t gather(const pmesh_codec *c, const pmesh_ring *ring,
     const uint32_t n = ring->count, end = padded(n + 1);
     const quads from = quads_triple(base);
     quads all = quads_of(1);
+    for (uint32_t i = end - LANES; i < end; i++) /* a number known beforehand */
+        d[i] = quads_of(0);
     for (uint32_t i = 0; i < n; i++) {
         d[i] = quads_sub(quads_triple(position[ring->vertex[i]]), from);
         all = quads_or(all, quads_size(d[i]));
     }
-    for (uint32_t i = n; i < end; i++)
-        d[i] = quads_of(0);
     return quads_any(all);
 }
 
@@ -132,7 +147,7 @@ static void place_spokes(pmesh_star *s)
 
 /* One coordinate of the normals of LANES faces, from the others of spokes;
  * returns their sum. Behind the last face they are 0. */
-static int32_t cross(const int16_t *a, const int16_t *b, int32_t *face)
+static inline int32_t cross(const int16_t *a, const int16_t *b, int32_t *face)
 {
     const lanes x = lanes_load(a), next_x = lanes_load(a + 1);
     const lanes y = lanes_load(b), next_y = lanes_load(b + 1);
@@ -147,15 +162,16 @@ static int32_t cross(const int16_t *a, const int16_t *b, int32_t *face)
 /* The faces' normals, and their sum scaled to length 2^14. */
 static void find_normal(pmesh_star *s)
 {
-    int64_t sum[3];
+    const int16_t *x = s->spoke[0], *y = s->spoke[1], *z = s->spoke[2];
+    int64_t sum[3] = { 0, 0, 0 };
     uint64_t all = 0;
-    for (int k = 0; k < 3; k++) {
-        const int16_t *a = s->spoke[(k + 1) % 3], *b = s->spoke[(k + 2) % 3];
-        sum[k] = 0;
-        for (uint32_t i = 0; i < s->count; i += LANES)
-            sum[k] += cross(a + i, b + i, s->face[k] + i);
-        all |= (uint64_t)(sum[k] < 0 ? -sum[k] : sum[k]);
+    for (uint32_t i = 0; i < s->count; i += LANES) {
+        sum[0] += cross(y + i, z + i, s->face[0] + i);
+        sum[1] += cross(z + i, x + i, s->face[1] + i);
+        sum[2] += cross(x + i, y + i, s->face[2] + i);
     }
+    for (int k = 0; k < 3; k++)
+        all |= (uint64_t)(sum[k] < 0 ? -sum[k] : sum[k]);
     const unsigned bits = pmesh_bit_length(all);
     const unsigned drop = bits > SUM_BITS ? bits - SUM_BITS : 0;
     uint32_t square = 0;
@@ -210,15 +226,16 @@ void pmesh_star_make(pmesh_star *s, const pmesh_codec *c,
 
 /* sum / (weight x times), |sum| <= weight x 2^14 < 2^31. */
 static void centre(const int32_t sum[3], int32_t weight, int32_t times,
-                   int32_t out[3])
+                   int32_t out[QUADS])
 {
     const int64_t per =
         weight ? (UINT32_C(1) << 31) / (uint32_t)(weight * times) : 0;
     for (int k = 0; k < 3; k++)
         out[k] = (int32_t)(sum[k] * per >> 31);
+    out[3] = 0;
 }
 
-static void centre_of_spokes(const pmesh_star *s, int32_t out[3])
+static void centre_of_spokes(const pmesh_star *s, int32_t out[QUADS])
 {
     quads sum[3] = { quads_of(0), quads_of(0), quads_of(0) };
     quads weight = quads_of(0);
@@ -249,7 +266,7 @@ static quads face_lengths(const pmesh_star *s, uint32_t i)
 }
 
 /* Behind the last face all lengths are 0. */
-static void centre_of_area(const pmesh_star *s, int32_t out[3])
+static void centre_of_area(const pmesh_star *s, int32_t out[QUADS])
 {
     int32_t length[PMESH_STAR_ROOM], total[3];
     quads sum[3] = { quads_of(0), quads_of(0), quads_of(0) };
@@ -278,7 +295,8 @@ static void centre_of_area(const pmesh_star *s, int32_t out[3])
     centre(total, quads_total(weight), 3, out);
 }
 
-void pmesh_star_centres(const pmesh_star *s, int32_t area[3], int32_t spokes[3])
+void pmesh_star_centres(const pmesh_star *s, int32_t area[QUADS],
+                        int32_t spokes[QUADS])
 {
     centre_of_area(s, area);
     centre_of_spokes(s, spokes);

@@ -78,8 +78,8 @@ void pmesh_star_make(pmesh_star *s, const pmesh_codec *c,
                      const pmesh_ring *ring, const int32_t base[3]);
 
 /* Centres from the mean: of the polygon by the area of its triangles, and of
- * the spokes by their length. */
-void pmesh_star_centres(const pmesh_star *s, int32_t area[3],
-                        int32_t spokes[3]);
+ * the spokes by their length; and a 0. */
+void pmesh_star_centres(const pmesh_star *s, int32_t area[QUADS],
+                        int32_t spokes[QUADS]);
 
 #endif

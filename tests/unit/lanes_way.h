@@ -40,9 +40,8 @@ static int32_t *put_short(int32_t *out, const lanes in[4])
         out = put_lanes(out, lanes_left(a, by));
         out = put_lanes(out, lanes_right(a, by));
     }
+    out = put_lanes(out, lanes_less(a, b));
     *out++ = lanes_least(a);
-    *out++ = lanes_find(a, (int16_t)lanes_least(a));
-    *out++ = lanes_find(b, 1); /* of some it is one of many, most have none */
     *out++ = lanes_total(a);
     return out;
 }

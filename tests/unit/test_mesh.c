@@ -2,6 +2,7 @@
 #include "format/mesh.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "tests/unit/random_cut.h"
 #include "tests/unit/shapes.h"
@@ -70,6 +71,35 @@ TEST(mesh_stays_a_manifold_under_any_splits)
     for (uint32_t seed = 1; seed <= 40; seed++) {
         CHECK(grows_soundly(tetrahedron(), seed));
         CHECK(grows_soundly(triangle(), seed));
+    }
+}
+
+static bool rings_agree(const pmesh_mesh *m, uint32_t v)
+{
+    pmesh_ring a, b;
+    if (!pmesh_ring_gather(m, v, &a))
+        return true;
+    return pmesh_ring_gather_known(m, v, a.count, &b) && b.count == a.count &&
+           b.face_count == a.face_count && b.open == a.open &&
+           !memcmp(b.edge, a.edge, a.face_count * sizeof *a.edge) &&
+           !memcmp(b.vertex, a.vertex, a.count * sizeof *a.vertex);
+}
+
+TEST(ring_of_known_size_is_the_one_that_is_walked_around)
+{
+    for (uint32_t seed = 1; seed <= 40; seed++) {
+        store *s = seed % 2 ? tetrahedron() : triangle();
+        uint32_t random = seed;
+        while (s->mesh.vertex_count < CAPACITY) {
+            pmesh_ring ring;
+            const uint32_t v = shape_random(&random, s->mesh.vertex_count);
+            if (!pmesh_ring_gather(&s->mesh, v, &ring))
+                continue;
+            pmesh_mesh_split(&s->mesh, v, &ring, random_cut(&random, &ring));
+        }
+        for (uint32_t v = 0; v < s->mesh.vertex_count; v++)
+            CHECK(rings_agree(&s->mesh, v));
+        free(s);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "encoder/enc_pipe.h"
 #include "encoder/enc_pool.h"
 #include "format/alloc.h"
 #include "tests/unit/shapes.h"
@@ -67,6 +68,110 @@ TEST(pool_leaves_the_calling_thread_free)
     for (int i = 0; i < PARTS; i++)
         CHECK(c.part[i] == 1);
     enc_pool_run(pool, 0, count_part, &c);
+    enc_pool_destroy(pool);
+}
+
+/* ---- aside --------------------------------------------------------------- */
+
+typedef struct chore {
+    enc_pool *pool;
+    uint32_t done; /* parts */
+    bool disorder, busy;
+} chore;
+
+static void do_aside(void *user, uint32_t part, unsigned worker)
+{
+    chore *c = user;
+
+    c->disorder |= c->busy || part != c->done;
+    c->busy = true;
+    for (int i = 0; i < 10; i++)
+        enc_pool_give_way(c->pool, worker);
+    c->busy = false;
+    c->done++;
+}
+
+TEST(pool_does_work_aside_in_order_while_loops_go_on)
+{
+    for (uint32_t threads = 2; threads <= WORKERS; threads++) {
+        enc_pool *pool = pool_of(threads);
+        for (uint32_t parts = 0; parts <= 60; parts += 20) {
+            chore c = { .pool = pool };
+            enc_pool_aside(pool, do_aside, &c);
+            for (uint32_t i = 0; i < parts; i++) {
+                enc_pool_aside_more(pool);
+                check_counts(pool);
+            }
+            enc_pool_aside_end(pool);
+            CHECK(c.done == parts && !c.disorder);
+        }
+        enc_pool_destroy(pool);
+    }
+}
+
+/* ---- the pipe ------------------------------------------------------------ */
+
+enum { ENTRIES = 30000 }; /* several times what the pipe holds */
+
+typedef struct reader {
+    enc_pipe *pipe;
+    uint32_t read, wrong;
+} reader;
+
+static uint32_t size_of(uint32_t i)
+{
+    return 4 + i * 7919 % (i % 100 ? 300 : ENC_PIPE_MOST - 4);
+}
+
+/* An entry is its number, over and over. */
+static void read_all(void *user, uint32_t part, unsigned worker)
+{
+    reader *r = user;
+    const uint8_t *entry;
+
+    (void)part;
+    (void)worker;
+    while ((entry = enc_pipe_next(r->pipe))) {
+        const uint32_t size = size_of(r->read);
+        for (uint32_t k = 0; k + 4 <= size; k += 4)
+            r->wrong += memcmp(entry + k, &r->read, 4) != 0;
+        r->read++;
+    }
+}
+
+static void write_all(enc_pipe *pipe, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t size = size_of(i);
+        uint8_t *entry = enc_pipe_room(pipe, size);
+        for (uint32_t k = 0; k + 4 <= size; k += 4)
+            memcpy(entry + k, &i, 4);
+        if (i % 1000 == 0)
+            enc_pipe_flush(pipe);
+    }
+    enc_pipe_close(pipe);
+}
+
+TEST(pipe_tells_everything_in_order)
+{
+    const pmesh_allocator a = pmesh_allocator_resolve((pmesh_allocator){ 0 });
+    enc_pool *pool = pool_of(2);
+    reader r = { .pipe = enc_pipe_create(&a) };
+
+    for (uint32_t count = 0; count <= ENTRIES; count += ENTRIES / 3) {
+        enc_pipe_open(r.pipe);
+        r.read = 0;
+        enc_pool_begin(pool, 1, read_all, &r);
+        write_all(r.pipe, count);
+        enc_pool_end(pool);
+        CHECK(r.read == count && r.wrong == 0);
+    }
+    enc_pipe_open(r.pipe); /* nobody else reads */
+    r.read = 0;
+    write_all(r.pipe, 1000);
+    read_all(&r, 0, 0);
+    CHECK(r.read == 1000 && r.wrong == 0);
+    enc_pipe_destroy(r.pipe);
     enc_pool_destroy(pool);
 }
 
