@@ -75,6 +75,11 @@ def side_buffers(d):
         d["meshes"].append({"primitives": [{"attributes": {"POSITION": i + 1},
                                             "indices": 1}]})
 
+def factors(d):
+    d["materials"] = [{"pbrMetallicRoughness": {
+        "roughnessFactor": 1e300, "baseColorFactor": [-1e39, 0, 0, 1]}}]
+    d["meshes"][0]["primitives"][0]["material"] = 0
+
 # Values that are no numbers where tangents are.
 def tangents(d):
     at = 44
@@ -97,6 +102,7 @@ write("views.glb", views, LONG)
 write("view-images.glb", view_images, LONG)
 write("side-images.glb", side_images)
 write("side-buffers.glb", side_buffers)
+write("factors.glb", factors)
 for name, bad in ("inf", float("inf")), ("minus-inf", -float("inf")), \
                  ("nan", float("nan")), ("huge", 3e38):
     write("tangents-%s.glb" % name, tangents, struct.pack(
@@ -118,6 +124,11 @@ refused views 'the views are longer than a file of this size may have'
 refused view-images 'the views are longer than a file of this size may have'
 refused side-images 'read too often for a file of this size'
 refused side-buffers 'read too often for a file of this size'
+
+check 'factors beyond floats' 0 bake factors.glb -q -o x.pmesh
+check 'as OBJ' 0 extract x.pmesh -q -o x.obj
+ok 'are the largest there are' grep -q '^Pr 3.4028235e+38$' x.mtl
+ok 'and the least' grep -q '^Kd -3.4028235e+38 0 0$' x.mtl
 
 # Tangents that are no numbers: said, and finite in what comes out.
 cat >finite.py <<'PY'
