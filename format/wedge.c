@@ -403,6 +403,7 @@ static pmesh_status code_wedges(pmesh_codec *c, pmesh_coder *coder,
             set_coarse(m, m->wedge[d.at_u[0]], coarse);
         for (uint32_t i = 0; i < d.others && status == PMESH_OK; i++) {
             m->wedge[d.at[i]] = first_guess(&d, i);
+            /* Never, by SPEC 6.6; but an index would follow from it. */
             if (first_guess(&d, i) == PMESH_NONE)
                 status = corrupt(c, "SPEC 6.6: an ordinary split without a "
                                     "wedge to go on with");

@@ -32,6 +32,7 @@ extern "C" {
 
 #define GLTF_NONE UINT32_MAX
 #define GLTF_MAX_DEPTH 64 /* of nested JSON values */
+#define GLTF_MAX_MEMBERS 4096 /* of a JSON object */
 #define GLTF_MAX_FACES ((uint64_t)1 << 27)
 
 /* Slots of a primitive: NORMAL, TEXCOORD_0..7, COLOR_0..7. */
@@ -58,7 +59,9 @@ typedef struct gltf_source {
 } gltf_source;
 
 /* Finds the JSON text; `warnings` takes what is odd but harmless. Nesting
- * beyond GLTF_MAX_DEPTH fails, so later stages may recurse over values. */
+ * beyond GLTF_MAX_DEPTH fails, so later stages may recurse over values, and so
+ * do objects with more than GLTF_MAX_MEMBERS, which those that keep their
+ * members in order search one by one. */
 bool gltf_open(const uint8_t *data, size_t size, gltf_source *out,
                asset *warnings, asset_error *error);
 
@@ -276,9 +279,11 @@ typedef struct gltf_channels {
 bool gltf_is_coded(const gltf_primitive *p);
 
 /* Finds the channels of a mesh, the most needed first; warns of what is left
- * out. */
-void gltf_channels_of(const gltf_model *model, const gltf_mesh *mesh,
-                      const char *name, gltf_channels *out, asset *warnings);
+ * out. Fails if primitives that share elements make it look at more of them
+ * than the budget has bytes. */
+bool gltf_channels_of(const gltf_model *model, const gltf_mesh *mesh,
+                      const char *name, gltf_budget *budget, gltf_channels *out,
+                      asset *warnings, asset_error *error);
 
 /* A primitive's accessor for a channel; NULL: it has none that fits. */
 const gltf_accessor *gltf_channel_accessor(const gltf_model *model,
@@ -288,11 +293,12 @@ const gltf_accessor *gltf_channel_accessor(const gltf_model *model,
 /*
  * A mesh in its own space; faces of coded primitive k have material k. Fails
  * also if the mesh has no face at all: *empty tells. `bits` of the attributes
- * are those of the channels.
+ * are those of the channels. What it takes is taken from the budget, for meshes
+ * may share accessors.
  */
 bool gltf_mesh_asset(const gltf_model *model, const gltf_mesh *mesh,
-                     const gltf_channels *channels, asset *out, bool *empty,
-                     asset_error *error);
+                     const gltf_channels *channels, gltf_budget *budget,
+                     asset *out, bool *empty, asset_error *error);
 
 #ifdef __cplusplus
 }

@@ -26,6 +26,8 @@ typedef struct search {
     candidate found[MOST_CANDIDATES];
     size_t count;
     bool too_many;
+    gltf_budget *budget;
+    bool spent;
 } search;
 
 bool gltf_is_coded(const gltf_primitive *p)
@@ -183,6 +185,10 @@ static void fit_whole_numbers(search *s, gltf_channel *c)
         const gltf_primitive *p = &s->model->primitives[s->mesh->first + k];
         const gltf_accessor *a =
             gltf_is_coded(p) ? gltf_channel_accessor(s->model, p, c) : NULL;
+        if (a && !gltf_spend(s->budget, a->count, a->components)) {
+            s->spent = true;
+            return;
+        }
         for (uint64_t i = 0; a && whole && i < a->count; i++) {
             double v[4] = { 0 };
             gltf_get(a, i, v);
@@ -208,11 +214,12 @@ static void fit_whole_numbers(search *s, gltf_channel *c)
         c->bits++;
 }
 
-void gltf_channels_of(const gltf_model *model, const gltf_mesh *mesh,
-                      const char *name, gltf_channels *out, asset *warnings)
+bool gltf_channels_of(const gltf_model *model, const gltf_mesh *mesh,
+                      const char *name, gltf_budget *budget, gltf_channels *out,
+                      asset *warnings, asset_error *error)
 {
     search s = { .model = model, .mesh = mesh, .name = name,
-                 .warnings = warnings };
+                 .warnings = warnings, .budget = budget };
     bool morphs = false;
     uint8_t generic = 0;
 
@@ -243,4 +250,6 @@ void gltf_channels_of(const gltf_model *model, const gltf_mesh *mesh,
             c->number = generic++;
         fit_whole_numbers(&s, c);
     }
+    return !s.spent || asset_fail(error, name, "its primitives share too many "
+                                  "elements for a file of this size");
 }

@@ -22,16 +22,17 @@ static bool fail_at(asset_error *error, size_t offset, const char *what)
     return asset_fail(error, where, "%s", what);
 }
 
-/* Whether the text nests deeper than parsers with a stack can bear. Strings
- * are skipped; the text need not be valid JSON. */
-static bool too_deep(const char *text, size_t size, size_t *offset)
+/* Whether the text nests deeper than parsers with a stack can bear, or has an
+ * object with so many members that looking for each takes too long. Strings are
+ * skipped; the text need not be valid JSON. */
+static bool fits_parsers(const char *text, size_t size, asset_error *error)
 {
+    size_t room[GLTF_MAX_DEPTH + 1]; /* for members, by depth */
     size_t depth = 0;
     bool quoted = false;
 
     for (size_t i = 0; i < size; i++) {
         const char c = text[i];
-        *offset = i;
         if (quoted) {
             if (c == '\\')
                 i++;
@@ -41,12 +42,20 @@ static bool too_deep(const char *text, size_t size, size_t *offset)
             quoted = true;
         } else if (c == '[' || c == '{') {
             if (++depth > GLTF_MAX_DEPTH)
-                return true;
+                return asset_fail(error, "",
+                                  "JSON is nested deeper than %d levels",
+                                  GLTF_MAX_DEPTH);
+            room[depth] = c == '{' ? GLTF_MAX_MEMBERS : SIZE_MAX;
+        } else if (c == ',' && depth > 0) {
+            if (--room[depth] == 0)
+                return asset_fail(error, "",
+                                  "a JSON object has more than %d members",
+                                  GLTF_MAX_MEMBERS);
         } else if ((c == ']' || c == '}') && depth > 0) {
             depth--;
         }
     }
-    return false;
+    return true;
 }
 
 static bool open_chunks(const uint8_t *data, size_t length, gltf_source *out,
@@ -110,7 +119,6 @@ bool gltf_open(const uint8_t *data, size_t size, gltf_source *out,
                asset *warnings, asset_error *error)
 {
     static const uint8_t bom[3] = { 0xEF, 0xBB, 0xBF };
-    size_t offset = 0;
 
     out->file_size = size;
     if (size == 0)
@@ -134,8 +142,5 @@ bool gltf_open(const uint8_t *data, size_t size, gltf_source *out,
         start++;
     if (start == out->json_size || out->json[start] != '{')
         return asset_fail(error, "", "neither a GLB nor a JSON object");
-    if (too_deep(out->json, out->json_size, &offset))
-        return asset_fail(error, "", "JSON is nested deeper than %d levels",
-                          GLTF_MAX_DEPTH);
-    return true;
+    return fits_parsers(out->json, out->json_size, error);
 }

@@ -46,6 +46,7 @@ private:
     std::vector<use> accessor_use, view_use;
     std::vector<bool> image_view, image_taken;
     std::vector<gltf_blob> buffers; /* loaded when needed */
+    gltf_sides sides;
     bool keeps_primitives = false, keeps_draco = false;
 
     size_t count(const char *list) const;
@@ -93,8 +94,14 @@ gltf_item taker::item(const char *name, size_t number) const
 
 const gltf_blob &taker::buffer(uint32_t number)
 {
-    if (buffers[number].empty())
-        buffers[number] = gltf_load_buffer(source, item("buffers", number));
+    if (!buffers[number].empty())
+        return buffers[number];
+    const gltf_item from = item("buffers", number);
+    buffers[number] = gltf_load_buffer(source, from);
+    const auto uri = from.value.find("uri");
+    if (uri != from.value.end())
+        gltf_pay_side(sides, from, uri->get_ref<const std::string &>(),
+                      buffers[number].size(), budget);
     return buffers[number];
 }
 
@@ -113,6 +120,8 @@ gltf_bytes taker::view_bytes(size_t number)
         from.fail("runs past its buffer");
     if (packed)
         return gltf_inflate(from, bytes.data() + offset, size, budget);
+    if (!gltf_spend(&budget, 1, size)) /* views may share bytes */
+        from.fail("the views are longer than a file of this size may have");
     return gltf_bytes(bytes.data() + offset, bytes.data() + offset + size);
 }
 
@@ -349,6 +358,8 @@ void taker::images()
             ok = gltf_uri_read(&source, name.c_str(), name.size(),
                                bytes.data(), size, &error);
         }
+        if (ok)
+            gltf_pay_side(sides, image, name, size, budget);
         const char *mime = ok ? mime_of(bytes) : nullptr;
         if (!ok || !mime) {
             asset_warn(warnings, "image %zu stays outside: %s", i,

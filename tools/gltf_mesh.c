@@ -19,6 +19,7 @@ typedef struct maker {
     asset_error *error;
     bool empty;
     gltf_order order;
+    gltf_budget *budget;
 } maker;
 
 /* One primitive at work. */
@@ -31,6 +32,15 @@ typedef struct part {
     char where[48];
 } part;
 
+/* Bytes of one vertex. */
+static uint64_t vertex_size(const gltf_channels *channels)
+{
+    uint64_t size = 3 * sizeof(double);
+    for (size_t i = 0; i < channels->count; i++)
+        size += channels->item[i].components * sizeof(float);
+    return size;
+}
+
 /* A mesh may use a few vertices of a large buffer: room is for those that faces
  * can name. */
 static bool reserve(maker *m, uint64_t faces, uint64_t vertices,
@@ -42,6 +52,10 @@ static bool reserve(maker *m, uint64_t faces, uint64_t vertices,
     if (faces > GLTF_MAX_FACES)
         return asset_fail(m->error, "", "more than %llu triangles",
                           (unsigned long long)GLTF_MAX_FACES);
+    if (!gltf_spend(m->budget, faces, 4 * sizeof *out->indices) ||
+        !gltf_spend(m->budget, vertices, vertex_size(m->channels)))
+        return asset_fail(m->error, "", "the meshes expand to more than a file "
+                          "of this size may");
     out->positions = malloc((size_t)vertices * 3 * sizeof *out->positions);
     out->indices = malloc((size_t)faces * 3 * sizeof *out->indices);
     out->materials = malloc((size_t)faces * sizeof *out->materials);
@@ -187,11 +201,11 @@ static bool make(maker *m, const gltf_mesh *mesh, part *parts)
 }
 
 bool gltf_mesh_asset(const gltf_model *model, const gltf_mesh *mesh,
-                     const gltf_channels *channels, asset *out, bool *empty,
-                     asset_error *error)
+                     const gltf_channels *channels, gltf_budget *budget,
+                     asset *out, bool *empty, asset_error *error)
 {
     maker m = { .model = model, .channels = channels, .out = out,
-                .error = error };
+                .error = error, .budget = budget };
     part *parts = calloc(mesh->count + 1, sizeof *parts);
 
     *out = (asset){ 0 };

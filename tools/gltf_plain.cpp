@@ -8,6 +8,8 @@
  */
 #include "tools/gltf_plain.h"
 
+#include <filesystem>
+
 namespace {
 
 /* Made when it is first asked for: before main() nobody tells of memory that
@@ -36,6 +38,7 @@ private:
     asset *warnings;
     gltf_json in, out;
     gltf_plain plain;
+    gltf_sides sides;
     /* From a number in `in` to one in `out`; GLTF_NONE: not needed yet. */
     std::vector<uint32_t> buffer_ids, view_ids, accessor_ids;
     bool skipped_mode = false, skipped_targets = false, skipped_skin = false;
@@ -146,11 +149,9 @@ gltf_blob builder::load(const gltf_item &from)
     gltf_blob bytes = gltf_load_buffer(source, from);
     const auto uri = from.value.find("uri");
     if (uri != from.value.end() &&
-        uri->get_ref<const std::string &>().compare(0, 5, "data:") != 0) {
+        gltf_pay_side(sides, from, uri->get_ref<const std::string &>(),
+                      bytes.size(), budget))
         plain.byte_count += bytes.size();
-        budget.left +=
-            gltf_budget_for(bytes.size()).left - gltf_budget_for(0).left;
-    }
     return bytes;
 }
 
@@ -570,6 +571,24 @@ gltf_blob gltf_load_buffer(const gltf_source &source, const gltf_item &from)
                        &error))
         from.fail(error.what);
     return gltf_blob(std::move(bytes));
+}
+
+/* "a//./b" is the file "a/b". */
+bool gltf_pay_side(gltf_sides &sides, const gltf_item &from,
+                   const std::string &uri, uint64_t size, gltf_budget &budget)
+{
+    std::vector<char> path(uri.size() + 1);
+
+    if (!gltf_uri_path(uri.c_str(), uri.size(), path.data()))
+        return false; /* inline: the asset is as large as that */
+    const std::filesystem::path plain(path.data());
+    if (sides.insert(plain.lexically_normal().string()).second) {
+        budget.left += gltf_budget_for(size).left - gltf_budget_for(0).left;
+        return true;
+    }
+    if (!gltf_spend(&budget, 1, size))
+        from.fail("its file was read too often for a file of this size");
+    return false;
 }
 
 bool gltf_is_harmless(const std::string &name)

@@ -7,6 +7,7 @@
 #define GLTF_PLAIN_H
 
 #include <cstdint>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -102,6 +103,16 @@ uint32_t gltf_to_id(const gltf_item &item, const char *member,
 
 /* All that a buffer holds: of the BIN chunk, inline or beside the file. */
 gltf_blob gltf_load_buffer(const gltf_source &source, const gltf_item &buffer);
+
+/* Files beside the asset that were read, by their paths. */
+using gltf_sides = std::set<std::string>;
+
+/* To be called with each URI that was read, and how many bytes. The first time
+ * a file adds to the budget as if the asset were larger by it; after that its
+ * bytes are taken from it, since a few bytes name it once more. True if it was
+ * the first time. */
+bool gltf_pay_side(gltf_sides &sides, const gltf_item &from,
+                   const std::string &uri, uint64_t size, gltf_budget &budget);
 
 /* Whether geometry is complete without knowing the extension, which refers to
  * no accessor or view but where glTF itself does. */

@@ -28,14 +28,21 @@ void count(const pmesh_scene *scene, uint32_t mesh_count, uint64_t *instances)
 {
     const gltf_document doc = scene_document(scene);
     const auto streams = streams_of(doc);
-    for (const gltf_document &node :
-         doc.value("nodes", gltf_document::array())) {
-        const size_t mesh = node.value("mesh", streams.size());
-        if (mesh < streams.size())
-            for (const uint32_t stream : streams[mesh])
-                if (stream < mesh_count)
-                    instances[stream]++;
+    const auto nodes = doc.find("nodes");
+    std::vector<uint64_t> shown(streams.size());
+
+    if (nodes == doc.end())
+        return;
+    for (const gltf_document &node : *nodes) {
+        const auto mesh = node.find("mesh");
+        if (mesh != node.end() && mesh->is_number_unsigned() &&
+            *mesh < shown.size())
+            shown[mesh->get<size_t>()]++;
     }
+    for (size_t i = 0; i < streams.size(); i++)
+        for (const uint32_t stream : streams[i])
+            if (stream < mesh_count)
+                instances[stream] += shown[i];
 }
 
 } // namespace

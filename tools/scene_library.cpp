@@ -3,8 +3,10 @@
  * scene_library.cpp - a scene's materials for OBJ: a .mtl text, and the images
  * that it names. Names of materials become unique, for OBJ knows them by name.
  */
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <set>
 
@@ -42,11 +44,13 @@ double component(const gltf_document &of, const char *name, size_t k,
                : fallback;
 }
 
+/* JSON may hold what no float does. */
 void put_number(asset_bytes *out, double value)
 {
+    constexpr double most = std::numeric_limits<float>::max();
     char text[40];
-    const size_t n =
-        asset_number_print_float(text + 1, static_cast<float>(value));
+    const size_t n = asset_number_print_float(
+        text + 1, static_cast<float>(std::clamp(value, -most, most)));
     text[0] = ' ';
     asset_put(out, text, n + 1);
 }

@@ -82,13 +82,15 @@ class streamer {
 public:
     streamer(const gltf_model &from, scene_parts *to,
              std::vector<gltf_stream> *of)
-        : model(from), out(to), streams(of)
+        : model(from), budget(gltf_budget_for(from.byte_count)), out(to),
+          streams(of)
     {
     }
     void take(size_t number, const std::string &name);
 
 private:
     const gltf_model &model;
+    gltf_budget budget; /* of all meshes together */
     scene_parts *out;
     std::vector<gltf_stream> *streams; /* by primitive */
 
@@ -104,16 +106,17 @@ bool streamer::add(const gltf_mesh &mesh, const std::string &name, bool whole)
     asset_error error;
     bool empty;
 
-    gltf_channels_of(&model, &mesh, name.c_str(), &stream.channels,
-                     &out->notes);
+    if (!gltf_channels_of(&model, &mesh, name.c_str(), &budget,
+                          &stream.channels, &out->notes, &error))
+        fail(error);
     if (!stream.channels.fits) {
         asset_warn(&out->notes, "%s: its morph targets need more than %d "
                    "attributes; it is kept as it is", name.c_str(),
                    PMESH_MAX_ATTRIBUTES);
         return true;
     }
-    if (!gltf_mesh_asset(&model, &mesh, &stream.channels, &to->mesh, &empty,
-                         &error)) {
+    if (!gltf_mesh_asset(&model, &mesh, &stream.channels, &budget, &to->mesh,
+                         &empty, &error)) {
         if (!empty)
             fail(error);
         return true;

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+# shellcheck shell=sh disable=SC2154
+# glTF files of a few hundred kilobytes that ask for gigabytes or hours: what
+# they share costs them as often as it is named.
+cat >hostile.py <<'PY'
+import json, struct
+
+POINTS = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
+CORNERS = struct.pack("<4H", 0, 1, 2, 0)
+
+# A triangle at accessors 0 and 1, then `more` bytes from 44 on.
+def write(name, change, more=b"", buffers=None):
+    data = POINTS + CORNERS + more
+    d = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+         "nodes": [{"mesh": 0}, {"mesh": 0}],
+         "meshes": [{"primitives": [{"attributes": {"POSITION": 0},
+                                     "indices": 1}]}],
+         "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3,
+                        "type": "VEC3"},
+                       {"bufferView": 1, "componentType": 5123, "count": 3,
+                        "type": "SCALAR"}],
+         "bufferViews": [{"buffer": 0, "byteLength": 36},
+                         {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+         "buffers": [{"byteLength": len(data)}]}
+    change(d)
+    text = json.dumps(d, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    data += b"\0" * (-len(data) % 4)
+    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text
+    chunks += struct.pack("<II", len(data), 0x004E4942) + data
+    with open(name, "wb") as out:
+        out.write(b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks)
+
+def wide(d):
+    d.update(("a%d" % i, 0) for i in range(100000))
+
+def wide_enough(d):
+    d["extras"] = {"a%d" % i: 0 for i in range(4096)}
+
+def meshes(d):
+    d["accessors"].append({"componentType": 5126, "count": 900000,
+                           "type": "VEC3"})
+    d["meshes"] = [{"primitives": [{"attributes": {"POSITION": 2},
+                                    "mode": 5}]}] * 3000
+
+def elements(d):
+    for kind, name in (5126, "VEC3"), (5121, "SCALAR"):
+        d["accessors"].append({"componentType": kind, "count": 800000,
+                               "type": name})
+    part = {"attributes": {"POSITION": 2, "_A": 3}, "indices": 1}
+    d["meshes"] = [{"primitives": [part] * 4000}]
+
+LONG = b"\x89PNG" + bytes(400000)
+
+def views(d):
+    d["bufferViews"] += [{"buffer": 0, "byteOffset": 44,
+                          "byteLength": len(LONG)}] * 3000
+    d["extensions"] = {"X_views": {"all": list(range(2, 3002))}}
+
+def view_images(d):
+    views(d)
+    del d["extensions"]
+    d["images"] = [{"bufferView": 2 + i} for i in range(3000)]
+
+def side_images(d):
+    d["images"] = [{"uri": "./" * (i % 3) + "long.png"} for i in range(3000)]
+
+def side_buffers(d):
+    for i in range(1, 3000):
+        d["buffers"].append({"byteLength": len(LONG),
+                             "uri": ".//" * (i % 3) + "long.png"})
+        d["bufferViews"].append({"buffer": i, "byteLength": 36})
+        d["accessors"].append({"bufferView": i + 1, "componentType": 5126,
+                               "count": 3, "type": "VEC3"})
+        d["meshes"].append({"primitives": [{"attributes": {"POSITION": i + 1},
+                                            "indices": 1}]})
+
+def factors(d):
+    d["materials"] = [{"pbrMetallicRoughness": {
+        "roughnessFactor": 1e300, "baseColorFactor": [-1e39, 0, 0, 1]}}]
+    d["meshes"][0]["primitives"][0]["material"] = 0
+
+# Values that are no numbers where tangents are.
+def tangents(d):
+    at = 44
+    for name, width in ("TANGENT", 4), ("NORMAL", 3), ("TEXCOORD_0", 2):
+        d["meshes"][0]["primitives"][0]["attributes"][name] = \
+            len(d["accessors"])
+        d["accessors"].append({"bufferView": len(d["bufferViews"]),
+                               "componentType": 5126, "count": 3,
+                               "type": "VEC%d" % width})
+        d["bufferViews"].append({"buffer": 0, "byteOffset": at,
+                                 "byteLength": 12 * width})
+        at += 12 * width
+
+open("long.png", "wb").write(LONG)
+write("wide.glb", wide)
+write("wide-enough.glb", wide_enough)
+write("meshes.glb", meshes)
+write("elements.glb", elements)
+write("views.glb", views, LONG)
+write("view-images.glb", view_images, LONG)
+write("side-images.glb", side_images)
+write("side-buffers.glb", side_buffers)
+write("factors.glb", factors)
+for name, bad in ("inf", float("inf")), ("minus-inf", -float("inf")), \
+                 ("nan", float("nan")), ("huge", 3e38):
+    write("tangents-%s.glb" % name, tangents, struct.pack(
+        "<27f", *[bad, 0, 0, 1, 1, 0, 0, bad, 1, 0, 0, 1] + [0, 0, 1] * 3 +
+        [0, 0, 1, 0, 0, 1]))
+PY
+python3 hostile.py
+
+# refused NAME WORDS: with that message, in less than the minute of check.
+refused() {
+    check "$1" 3 bake "$1.glb" -o x.pmesh
+    ok 'says why' err "$2"
+}
+refused wide 'more than 4096 members'
+check 'as many members' 0 bake wide-enough.glb -q -o x.pmesh
+refused meshes 'expand to more than a file of this size may'
+refused elements 'share too many elements for a file of this size'
+refused views 'the views are longer than a file of this size may have'
+refused view-images 'the views are longer than a file of this size may have'
+refused side-images 'read too often for a file of this size'
+refused side-buffers 'read too often for a file of this size'
+
+check 'factors beyond floats' 0 bake factors.glb -q -o x.pmesh
+check 'as OBJ' 0 extract x.pmesh -q -o x.obj
+ok 'are the largest there are' grep -q '^Pr 3.4028235e+38$' x.mtl
+ok 'and the least' grep -q '^Kd -3.4028235e+38 0 0$' x.mtl
+
+# Tangents that are no numbers: said, and finite in what comes out.
+cat >finite.py <<'PY'
+import json, math, struct, sys
+data = open(sys.argv[1], "rb").read()
+size = struct.unpack_from("<I", data, 12)[0]
+doc = json.loads(data[20:20 + size])
+seen = 0
+for p in doc["meshes"][0]["primitives"]:
+    for name, number in p["attributes"].items():
+        a = doc["accessors"][number]
+        view = doc["bufferViews"][a["bufferView"]]
+        n = int(a["type"][3])
+        at = 28 + size + view.get("byteOffset", 0) + a.get("byteOffset", 0)
+        assert a["componentType"] == 5126
+        for i in range(a["count"]):
+            value = struct.unpack_from(
+                "<%df" % n, data, at + i * view.get("byteStride", 4 * n))
+            assert all(map(math.isfinite, value)), (name, value)
+        seen += name == "TANGENT"
+assert seen
+PY
+for bad in inf minus-inf nan huge; do
+    check "tangents: $bad" 0 bake tangents-$bad.glb -o x.pmesh
+    [ $bad = huge ] || ok 'says so' err 'values were not finite and became 0'
+    check 'verify' 0 verify x.pmesh
+    check 'out again' 0 extract x.pmesh -q -o x.glb
+    ok 'all are finite' python3 finite.py x.glb
+done
