@@ -9,6 +9,7 @@ enum {
     MOST_PAIRS = 4,      /* of a vertex, by distance alone */
     MOST_FACES = 8,      /* of a sheet that is small */
     MOST_NEIGHBOURS = 3, /* of a vertex that wants a pair, like a leaf's */
+    MOST_FANS = 64,      /* of a vertex of a pair: they are compared */
     MOST_LOOKS = 1 << 14 /* vertices looked at for one */
 };
 
@@ -106,8 +107,8 @@ static uint32_t closest(const cells *c, uint32_t v, uint32_t most, fitness fit,
         for (uint32_t w = c->head[slot_of(c, x, y, z)];
              w != ENC_NONE && looks < MOST_LOOKS; w = c->next[w], looks++) {
             const int64_t d = distance_square(c, v, w);
-            if (w == v || d > c->size * c->size || !fit(user, v, w) ||
-                (count == most && d >= far[count - 1]))
+            if (w == v || d > c->size * c->size ||
+                (count == most && d >= far[count - 1]) || !fit(user, v, w))
                 continue;
             uint32_t at = count < most ? count++ : count - 1;
             for (; at > 0 && far[at - 1] > d; at--) {
@@ -203,11 +204,13 @@ static void find_sheets(sheets *t)
     }
 }
 
+/* Or so many that it may. */
 static bool has_sheet(const sheets *t, uint32_t v, uint32_t sheet)
 {
     const enc_surface *s = t->surface;
+    uint32_t fans = 0;
     for (uint32_t h = s->first[v]; h != ENC_NONE; h = enc_next_fan(s, h))
-        if (t->of[h / 3] == sheet)
+        if (t->of[h / 3] == sheet || ++fans > MOST_FANS)
             return true;
     return false;
 }
@@ -216,8 +219,9 @@ static bool is_foreign(const void *user, uint32_t v, uint32_t w)
 {
     const sheets *t = user;
     const enc_surface *s = t->surface;
+    uint32_t fans = 0;
     for (uint32_t h = s->first[v]; h != ENC_NONE; h = enc_next_fan(s, h))
-        if (has_sheet(t, w, t->of[h / 3]))
+        if (has_sheet(t, w, t->of[h / 3]) || ++fans > MOST_FANS)
             return false;
     return true;
 }

@@ -211,11 +211,13 @@ typedef enum hard {
     HUB,    /* all faces at one vertex */
     BOOK,   /* all faces at one edge */
     DUST,   /* all faces apart */
+    PILE,   /* all faces the same, each of its own material */
     WELDED, /* a plane whose faces share no vertex, but positions */
     HARD_KINDS
 } hard;
 
-static const char *const hard_names[] = { "hub", "book", "dust", "unwelded" };
+static const char *const hard_names[] = { "hub", "book", "dust", "pile",
+                                           "unwelded" };
 
 enum { SIDE = 300 };
 
@@ -247,6 +249,10 @@ static void hard_corner(hard kind, uint32_t n, uint32_t i, uint32_t k,
         out[0] = 10.0 * (i % SIDE) + (k == 1);
         out[1] = 10.0 * (i / SIDE) + (k == 2);
         break;
+    case PILE:
+        out[0] = k == 1;
+        out[1] = k == 2;
+        break;
     default:
         out[0] = quad % SIDE + dx[i % 2][k];
         out[1] = quad / SIDE + dy[i % 2][k];
@@ -260,8 +266,16 @@ static double time_of(hard kind, uint32_t n, double *decoding)
 {
     double *xyz = malloc(9 * (size_t)n * sizeof *xyz);
     uint32_t *index = malloc(3 * (size_t)n * sizeof *index);
+    uint32_t *material = malloc((size_t)n * sizeof *material);
+    const uint32_t materials = n < PMESH_MAX_MATERIALS ? n : PMESH_MAX_MATERIALS;
     pmesh_mesh_input in = { .positions = xyz, .indices = index,
                             .face_count = n };
+    for (uint32_t i = 0; i < n; i++)
+        material[i] = i % materials;
+    if (kind == PILE) {
+        in.materials = material;
+        in.material_count = materials;
+    }
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t k = 0; k < 3; k++) {
             const size_t corner = in.vertex_count++;
@@ -288,6 +302,7 @@ static double time_of(hard kind, uint32_t n, double *decoding)
         pmesh_decoder_destroy(dec);
         free(out.data);
     }
+    free(material);
     free(index);
     free(xyz);
     return best;
