@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * enc_distance.h - how far a point is from a triangle. All of it is inline: a
- * fifth of a bake is this.
+ * good part of a bake is this.
  */
 #ifndef ENC_DISTANCE_H
 #define ENC_DISTANCE_H

@@ -348,7 +348,8 @@ static uint32_t merged_first(const enc_surface *s, const enc_pair *pair)
     return first == enc_next(left) ? s->twin[enc_prev(left)] : first;
 }
 
-void enc_surface_change_star(enc_surface *s, uint32_t v)
+/* All faces around v have changed. */
+static void change_star(enc_surface *s, uint32_t v)
 {
     uint32_t start = s->first[v];
     for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
@@ -362,7 +363,7 @@ void enc_surface_contract(enc_surface *s, const enc_pair *pair,
     const uint32_t first = merged_first(s, pair);
 
     if (memcmp(s->position[v], place, sizeof s->position[0]) != 0)
-        enc_surface_change_star(s, v);
+        change_star(s, v);
     uint32_t h = s->first[u];
     do {
         s->vertex[h] = v;

@@ -172,9 +172,6 @@ void enc_surface_remove_face(enc_surface *s, uint32_t h);
 bool enc_surface_flips(const enc_surface *s, const enc_pair *pair,
                        const int32_t place[3]);
 
-/* Notes that the faces around v have changed. */
-void enc_surface_change_star(enc_surface *s, uint32_t v);
-
 /*
  * Contracts the pair, which must be one that can be joined; the parent moves
  * to `place`. With attributes, corners of the child get the wedge that
