@@ -81,9 +81,13 @@ static void measure_areas(puller *p)
     }
 }
 
+/* No more than where the determinant of a quadric is finite. */
 static double strength(double importance)
 {
-    return ENC_PULL * (importance > 0 ? importance : 1);
+    const double most = 1e60;
+    return ENC_PULL * (importance > most ? most
+                       : importance > 0  ? importance
+                                         : 1);
 }
 
 static void vector(const enc_mesh *mesh, uint32_t from, uint32_t to,

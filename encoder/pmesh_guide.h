@@ -36,7 +36,8 @@ typedef enum pmesh_constraint_kind {
     PMESH_POINT = 2    /* a set: each one stays where it is */
 } pmesh_constraint_kind;
 
-/* Its pull on a vertex is 1000 * importance times that of the faces around. */
+/* Its pull on a vertex is 1000 * importance, at most 1e60, times that of the
+ * faces around. */
 typedef struct pmesh_constraint {
     pmesh_constraint_kind kind;
     const uint32_t *vertices;

@@ -2,11 +2,16 @@
 /* guide_file.cpp - NAME.guide.json, in and out; tools/guide.md describes it. */
 #include "tools/guide_store.h"
 
+#include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <new>
 
 namespace {
+
+/* Of all constraints together: 256 MiB. A few bytes name all of a mesh. */
+constexpr uint64_t most_named = uint64_t{ 1 } << 26;
 
 /* A list of the document, or an empty one. */
 const guide_json &list_of(const guide_json &in, const char *name)
@@ -46,8 +51,10 @@ void read_weights(const guide_json &in, const guide_finder &find,
         if (list[i].is_object() && list[i].contains("values")) {
             std::vector<float> values;
             for (const auto &v : list[i]["values"])
-                values.push_back(
-                    static_cast<float>(guide_number(v, where + ".values")));
+                values.push_back(static_cast<float>(
+                    std::clamp(guide_number(v, where + ".values"),
+                               -static_cast<double>(FLT_MAX),
+                               static_cast<double>(FLT_MAX))));
             if (values.size() != find.count())
                 guide_fail(where + ".values",
                            std::to_string(values.size()) + " weights for " +
@@ -68,8 +75,12 @@ void read_weights(const guide_json &in, const guide_finder &find,
 }
 
 void put_constraint(guide_store *to, pmesh_constraint_kind kind,
-                    std::vector<uint32_t> vertices, double importance)
+                    std::vector<uint32_t> vertices, double importance,
+                    const std::string &where)
 {
+    to->named += vertices.size();
+    if (to->named > most_named)
+        guide_fail(where, "the constraints name more than 2^26 vertices");
     to->lists.push_back(std::move(vertices));
     to->constraints.push_back({ kind, to->lists.back().data(),
                                 to->lists.back().size(), importance });
@@ -105,7 +116,7 @@ void read_constraints(const guide_json &in, const char *name,
             if (item.value("closed", false) && !at.empty())
                 at.push_back(at.front());
         }
-        put_constraint(to, kind, std::move(at), importance);
+        put_constraint(to, kind, std::move(at), importance, where);
     }
 }
 
@@ -175,7 +186,10 @@ void read(const guide_json &in, const asset *mesh, guide *out)
 {
     check_members(in);
     guide_store *to = static_cast<guide_store *>(out->owner);
-    const guide_finder find(mesh, in.value("source", guide_json()));
+    /* Not a copy, which would recurse as deep as it is nested. */
+    static const guide_json none;
+    const auto source = in.find("source");
+    const guide_finder find(mesh, source == in.end() ? none : *source);
     if (find.is_other())
         to->warning = "the guide was made for another mesh: its vertices are "
                       "carried over to the nearest ones";

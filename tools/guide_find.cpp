@@ -24,6 +24,7 @@ void guide_points::sort() const
 {
     double low[3], high[3];
 
+    sorted = true;
     for (size_t v = 0; v < count; v++)
         for (size_t k = 0; k < 3; k++) {
             const double t = xyz[3 * v + k];
@@ -47,7 +48,7 @@ void guide_points::sort() const
  * not further than the best so far. */
 uint32_t guide_points::nearest(const double p[3]) const
 {
-    if (order.empty())
+    if (!sorted)
         sort();
     const auto along = [this](size_t i) {
         return xyz[3 * size_t{ order[i] } + axis];
@@ -137,6 +138,23 @@ guide_finder::guide_finder(const asset *of, const guide_json &source)
         theirs.push_back(guide_number(value, "source.positions"));
 }
 
+uint32_t guide_finder::nearest(const double p[3],
+                               const std::string &where) const
+{
+    const uint32_t v = points.nearest(p);
+
+    if (v == UINT32_MAX)
+        guide_fail(where, "the mesh has no vertex at a finite place");
+    return v;
+}
+
+void guide_finder::look(uint64_t many, const std::string &where) const
+{
+    if (many > to_look_at)
+        guide_fail(where, "the guide looks at more than 2^32 vertices");
+    to_look_at -= many;
+}
+
 uint32_t guide_finder::vertex(const guide_json &number,
                               const std::string &where) const
 {
@@ -149,7 +167,7 @@ uint32_t guide_finder::vertex(const guide_json &number,
     if (v >= count())
         guide_fail(where, "vertex " + std::to_string(v) + ", there are " +
                               std::to_string(count()));
-    return other ? points.nearest(&theirs[3 * static_cast<size_t>(v)])
+    return other ? nearest(&theirs[3 * static_cast<size_t>(v)], where)
                  : static_cast<uint32_t>(v);
 }
 
@@ -158,8 +176,9 @@ std::vector<uint32_t> guide_finder::find(const guide_json &item,
                                          std::vector<double> *strength) const
 {
     std::vector<uint32_t> found;
-    const auto all = [this](auto inside) {
+    const auto all = [&](auto inside) {
         std::vector<uint32_t> list;
+        look(mesh->vertex_count, where);
         for (size_t v = 0; v < mesh->vertex_count; v++)
             if (inside(mesh->positions + 3 * v))
                 list.push_back(static_cast<uint32_t>(v));
@@ -179,7 +198,7 @@ std::vector<uint32_t> guide_finder::find(const guide_json &item,
         for (const auto &place : *list) {
             double p[3];
             read_point(place, where + ".positions", p);
-            found.push_back(points.nearest(p));
+            found.push_back(nearest(p, where + ".positions"));
         }
     } else if (const auto box = item.find("box"); box != item.end()) {
         double low[3], high[3];

@@ -24,6 +24,7 @@ struct guide_store {
     std::vector<uint16_t> segments;
     std::vector<double> shares;
     std::list<std::vector<uint32_t>> lists; /* of the constraints */
+    uint64_t named = 0; /* vertices in these lists */
     std::vector<pmesh_constraint> constraints;
     std::list<std::string> names;
     std::vector<guide_camera> cameras;
@@ -45,6 +46,7 @@ private:
     const double *xyz;
     size_t count;
     mutable size_t axis = 0;
+    mutable bool sorted = false;
     mutable std::vector<uint32_t> order; /* made when first needed */
 
     void sort() const;
@@ -73,7 +75,11 @@ private:
     guide_points points;
     bool other = false;         /* made for another mesh */
     std::vector<double> theirs; /* its places */
+    mutable uint64_t to_look_at = uint64_t{ 1 } << 32;
 
+    /* Regions go over all vertices, and a few bytes make one more. */
+    void look(uint64_t many, const std::string &where) const;
+    uint32_t nearest(const double p[3], const std::string &where) const;
     uint32_t vertex(const guide_json &number, const std::string &where) const;
 };
 

@@ -2,6 +2,7 @@
 /* guide_weights.cpp - weights that come with the mesh. */
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <new>
 
 #include "tools/guide_mask.h"
@@ -80,19 +81,19 @@ std::vector<float> from_attribute(const asset *mesh, const std::string &name)
 std::vector<float> from_texture(const asset *mesh, const std::string &path)
 {
     const asset_attribute *uv = find_kind(mesh, PMESH_TEXCOORD);
-    guide_mask mask;
+    guide_mask mask = {};
+    const std::unique_ptr<guide_mask, void (*)(guide_mask *)> freed(
+        &mask, guide_mask_free);
     asset_error error;
 
     if (!uv)
         guide_fail("texture:" + path, "the mesh has no texture coordinates");
     if (!guide_mask_read(path.c_str(), &mask, &error))
         guide_fail("texture:" + path, error.what);
-    const std::vector<float> out =
-        gather(mesh, *uv, [&](const float *v) {
-            return guide_mask_at(&mask, v[0], mesh->texcoords_down ? v[1] : 1 - v[1]);
-        });
-    guide_mask_free(&mask);
-    return out;
+    return gather(mesh, *uv, [&](const float *v) {
+        return guide_mask_at(&mask, v[0],
+                             mesh->texcoords_down ? v[1] : 1 - v[1]);
+    });
 }
 
 std::vector<float> from(const asset *mesh, const std::string &source)

@@ -159,3 +159,27 @@ ok 'nothing is written' absent a.pmesh.tmp
 
 check 'bake --crease' 0 bake "$torus" -q -o r.pmesh --crease 10
 check 'bake --contours' 0 bake t.obj -q -o r.pmesh --contours all
+
+# A mesh none of whose vertices is near to anything.
+awk '/^element vertex/ { print; v = $3; next }
+     /^end_header/ { print; for (; v > 0; v--) print "nan 0 0 1"; body = 1 }
+     body && $1 != 3 { next } { if ($0 != "end_header") print }' q.ply >nan.ply
+printf '{"pmesh_guide": 1, "%s": [{"positions": [[0, 0, 0]], %s}]}' \
+    weights '"weight": 1' >near.json
+check 'a guide for a mesh without places' 3 bake nan.ply -o a.pmesh \
+    --guide near.json
+ok 'says so' err 'near.json: weights\[0\].positions: .*finite place'
+
+# However deep it is, and however often a few bytes name everything.
+awk 'BEGIN { printf "{\"pmesh_guide\": 1, \"source\": "
+             for (i = 0; i < 200000; i++) printf "["
+             for (i = 0; i < 200000; i++) printf "]"
+             print "}" }' >deep.json
+check 'a deep guide' 3 bake "$torus" -o a.pmesh --guide deep.json
+ok 'says what is wrong' err 'deep.json: source: an object is expected'
+awk 'BEGIN { printf "{\"pmesh_guide\": 1, \"points\": [{\"all\": 0}"
+             for (i = 0; i < 40000; i++) printf ",{\"all\": 0}"
+             print "]}" }' >all.json
+check 'a guide that names too much' 3 bake "$torus" -o a.pmesh \
+    --guide all.json
+ok 'says so' err 'all.json: points\[[0-9]*\]: .*more than 2^26 vertices'

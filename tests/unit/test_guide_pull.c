@@ -82,6 +82,25 @@ TEST(guide_constraints_are_no_cost)
     guide_finish(t);
 }
 
+/* However important: costs are made of these. */
+TEST(guide_constraints_stay_finite)
+{
+    uint32_t list[] = { 3, 40, 77, 120 };
+    for (int kind = 0; kind < 3; kind++) {
+        guide_trial *t = guide_trial_of(shape_make(SHAPE_TORUS, 16, 2));
+        const pmesh_constraint c = { .kind = (pmesh_constraint_kind)kind,
+                                     .vertices = list, .vertex_count = 4,
+                                     .importance = 1e308 };
+        t->guide.constraints = &c;
+        t->guide.constraint_count = 1;
+        guide_run(t);
+        for (uint32_t v = 0; v < t->mesh.vertex_count; v++)
+            for (int k = 0; k < 6; k++)
+                CHECK(isfinite(t->mesh.guide->pull[v].a[k]));
+        guide_finish(t);
+    }
+}
+
 static double line_distance(const double p[3], const double a[3],
                             const double b[3])
 {
