@@ -20,10 +20,10 @@ enum use : uint8_t { FREE, ANIMATION, NEEDED };
 class taker {
 public:
     taker(const gltf_source &from, const gltf_model &loaded,
-          const std::vector<gltf_stream> &coded, gltf_budget &expand,
-          asset *warn)
-        : source(from), model(loaded), streams(coded), budget(expand),
-          warnings(warn)
+          const std::vector<gltf_stream> &coded, gltf_sides &files,
+          gltf_budget &expand, asset *warn)
+        : source(from), model(loaded), streams(coded), sides(files),
+          budget(expand), warnings(warn)
     {
         in = gltf_json::parse(source.json, source.json + source.json_size);
         doc = gltf_document::parse(source.json,
@@ -31,6 +31,7 @@ public:
         accessor_use.assign(count("accessors"), FREE);
         view_use.assign(count("bufferViews"), FREE);
         buffers.resize(count("buffers"));
+        sides.read.clear();
     }
     gltf_parts take();
 
@@ -38,6 +39,7 @@ private:
     const gltf_source &source;
     const gltf_model &model;
     const std::vector<gltf_stream> &streams;
+    gltf_sides &sides;
     gltf_budget &budget;
     asset *warnings;
     gltf_json in;      /* as it was */
@@ -46,7 +48,6 @@ private:
     std::vector<use> accessor_use, view_use;
     std::vector<bool> image_view, image_taken;
     std::vector<gltf_blob> buffers; /* loaded when needed */
-    gltf_sides sides;
     bool keeps_primitives = false, keeps_draco = false;
 
     size_t count(const char *list) const;
@@ -97,11 +98,8 @@ const gltf_blob &taker::buffer(uint32_t number)
     if (!buffers[number].empty())
         return buffers[number];
     const gltf_item from = item("buffers", number);
-    buffers[number] = gltf_load_buffer(source, from);
-    const auto uri = from.value.find("uri");
-    if (uri != from.value.end())
-        gltf_pay_side(sides, from, uri->get_ref<const std::string &>(),
-                      buffers[number].size(), budget);
+    bool first;
+    buffers[number] = gltf_load_buffer(source, from, sides, budget, &first);
     return buffers[number];
 }
 
@@ -495,7 +493,8 @@ void gltf_erase_extension(gltf_document &object, const char *name)
 
 gltf_parts gltf_take_apart(const gltf_source &source, const gltf_model &model,
                            const std::vector<gltf_stream> &streams,
-                           gltf_budget &budget, asset *warnings)
+                           gltf_sides &sides, gltf_budget &budget,
+                           asset *warnings)
 {
-    return taker(source, model, streams, budget, warnings).take();
+    return taker(source, model, streams, sides, budget, warnings).take();
 }

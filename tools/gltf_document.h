@@ -29,14 +29,18 @@ struct gltf_parts {
 
 /*
  * Writes the document. `streams` has an element for each primitive of the
- * model, which was loaded from `source` with everything.
+ * model, which was loaded from `source` with everything. `sides` are the files
+ * that were read for the model and since.
  */
 gltf_parts gltf_take_apart(const gltf_source &source, const gltf_model &model,
                            const std::vector<gltf_stream> &streams,
-                           gltf_budget &budget, asset *warnings);
+                           gltf_sides &sides, gltf_budget &budget,
+                           asset *warnings);
 
-/* The largest scale of the instances of each mesh, over all scenes. */
-std::vector<double> gltf_scales(const gltf_source &source);
+/* The largest scale of the instances of each mesh, over all scenes; 1e30 if it
+ * is larger or not a number. */
+std::vector<double> gltf_scales(const gltf_source &source, gltf_sides &sides,
+                                gltf_budget &budget);
 
 /* Erases a member if it is there. Not nlohmann's erase(), which moves the
  * members behind it in place and copies their names meanwhile: if memory runs

@@ -146,12 +146,9 @@ void builder::check_extensions()
 
 gltf_blob builder::load(const gltf_item &from)
 {
-    gltf_blob bytes = gltf_load_buffer(source, from);
-    const auto uri = from.value.find("uri");
-    if (uri != from.value.end() &&
-        gltf_pay_side(sides, from, uri->get_ref<const std::string &>(),
-                      bytes.size(), budget))
-        plain.byte_count += bytes.size();
+    bool first;
+    gltf_blob bytes = gltf_load_buffer(source, from, sides, budget, &first);
+    plain.byte_count += first ? bytes.size() : 0;
     return bytes;
 }
 
@@ -537,15 +534,18 @@ gltf_plain builder::build()
     meshes();
     nodes_and_scene();
     plain.text = out.dump();
+    plain.sides = std::move(sides.counted);
     return std::move(plain);
 }
 
 } // namespace
 
-gltf_blob gltf_load_buffer(const gltf_source &source, const gltf_item &from)
+gltf_blob gltf_load_buffer(const gltf_source &source, const gltf_item &from,
+                           gltf_sides &sides, gltf_budget &budget, bool *first)
 {
     const uint64_t size = from.whole("byteLength");
     const auto uri = from.value.find("uri");
+    *first = false;
     if (size == 0)
         from.fail("byteLength is 0");
 
@@ -570,6 +570,7 @@ gltf_blob gltf_load_buffer(const gltf_source &source, const gltf_item &from)
     if (!gltf_uri_read(&source, name.c_str(), name.size(), bytes.data(), size,
                        &error))
         from.fail(error.what);
+    *first = gltf_pay_side(sides, from, name, size, budget);
     return gltf_blob(std::move(bytes));
 }
 
@@ -582,7 +583,10 @@ bool gltf_pay_side(gltf_sides &sides, const gltf_item &from,
     if (!gltf_uri_path(uri.c_str(), uri.size(), path.data()))
         return false; /* inline: the asset is as large as that */
     const std::filesystem::path plain(path.data());
-    if (sides.insert(plain.lexically_normal().string()).second) {
+    const std::string name = plain.lexically_normal().string();
+    if (sides.read.insert(name).second) {
+        if (!sides.counted.insert(name).second)
+            return false;
         budget.left += gltf_budget_for(size).left - gltf_budget_for(0).left;
         return true;
     }

@@ -68,6 +68,7 @@ struct gltf_plain {
     std::string text;             /* JSON without buffers */
     std::vector<gltf_blob> blobs; /* which are these */
     uint64_t byte_count = 0;      /* of the file and what lies beside it */
+    std::set<std::string> sides;  /* which of these were counted */
 };
 
 /* Reads the source's JSON and keeps what triangles and their attributes need:
@@ -101,18 +102,26 @@ struct gltf_item {
 uint32_t gltf_to_id(const gltf_item &item, const char *member,
                     const gltf_json &value, size_t limit);
 
-/* All that a buffer holds: of the BIN chunk, inline or beside the file. */
-gltf_blob gltf_load_buffer(const gltf_source &source, const gltf_item &buffer);
-
 /* Files beside the asset that were read, by their paths. */
-using gltf_sides = std::set<std::string>;
+struct gltf_sides {
+    std::set<std::string> counted; /* by anyone */
+    std::set<std::string> read;    /* by who goes over the document now */
+};
 
 /* To be called with each URI that was read, and how many bytes. The first time
- * a file adds to the budget as if the asset were larger by it; after that its
- * bytes are taken from it, since a few bytes name it once more. True if it was
- * the first time. */
+ * a file adds to the budget as if the asset were larger by it; if it is read
+ * again in the same walk its bytes are taken from that, since a few bytes name
+ * it once more. True if it was the first time. */
 bool gltf_pay_side(gltf_sides &sides, const gltf_item &from,
                    const std::string &uri, uint64_t size, gltf_budget &budget);
+
+/* All that a buffer holds: of the BIN chunk, inline or beside the file. Files
+ * are paid for; *first as from gltf_pay_side(). */
+gltf_blob gltf_load_buffer(const gltf_source &source, const gltf_item &buffer,
+                           gltf_sides &sides, gltf_budget &budget, bool *first);
+
+/* Files that were counted while the model was loaded. */
+const std::set<std::string> &gltf_sides_of(const gltf_model &model);
 
 /* Whether geometry is complete without knowing the extension, which refers to
  * no accessor or view but where glTF itself does. */

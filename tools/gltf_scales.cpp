@@ -30,10 +30,20 @@ matrix multiply(const matrix &a, const matrix &b)
     return out;
 }
 
+/* An element's number; SIZE_MAX, which no list has, for anything else: what
+ * refers to it is checked by nobody before. */
+size_t index_of(const gltf_json &value)
+{
+    if (!value.is_number_float())
+        return value.is_number() ? value.get<size_t>() : SIZE_MAX;
+    const double real = value.get<double>();
+    return real >= 0 && real < 0x1p53 ? static_cast<size_t>(real) : SIZE_MAX;
+}
+
 /*
  * At least the largest singular value of the upper 3 x 3, and equal to it if
  * that is a rotation behind a scale along the axes: the root of the largest
- * row sum of A^T A.
+ * row sum of A^T A; infinite if that is not a number.
  */
 double factor(const matrix &a)
 {
@@ -46,7 +56,7 @@ double factor(const matrix &a)
                 product += a.m[4 * i + k] * a.m[4 * j + k];
             sum += std::fabs(product);
         }
-        largest = std::fmax(largest, sum);
+        largest = sum >= 0 ? std::fmax(largest, sum) : HUGE_VAL;
     }
     return std::sqrt(largest);
 }
@@ -86,17 +96,22 @@ matrix local(const gltf_json &node)
 
 class measure {
 public:
-    explicit measure(const gltf_source &from) : source(from)
+    measure(const gltf_source &from, gltf_sides &files, gltf_budget &expand)
+        : source(from), sides(files), budget(expand)
     {
         in = gltf_json::parse(source.json, source.json + source.json_size);
+        sides.read.clear();
     }
     std::vector<double> run();
 
 private:
     const gltf_source &source;
+    gltf_sides &sides;
+    gltf_budget &budget;
     gltf_json in;
     std::vector<matrix> world;
     std::map<uint32_t, gltf_blob> buffers; /* loaded when needed */
+    std::map<size_t, double> skins;        /* what many nodes may share */
 
     const gltf_json &list(const char *name) const
     {
@@ -106,7 +121,8 @@ private:
     }
     void walk();
     matrix bind(const gltf_json &skin, size_t joint);
-    double of_skin(const gltf_json &skin);
+    double of_joints(const gltf_json &skin);
+    double of_skin(size_t skin);
 };
 
 /* From the roots on; a node that is met twice keeps what it had. */
@@ -161,9 +177,11 @@ matrix measure::bind(const gltf_json &skin, size_t joint)
     if (buffer == GLTF_NONE || view.extension("EXT_meshopt_compression"))
         return out;
     gltf_blob &bytes = buffers[buffer];
+    bool first;
     if (bytes.empty())
         bytes = gltf_load_buffer(
-            source, { list("buffers")[buffer], "buffers", buffer });
+            source, { list("buffers")[buffer], "buffers", buffer }, sides,
+            budget, &first);
     const uint64_t stride = view.whole("byteStride", 64);
     const uint64_t start = view.whole("byteOffset", 0) +
                            accessor.whole("byteOffset", 0) + joint * stride;
@@ -177,14 +195,14 @@ matrix measure::bind(const gltf_json &skin, size_t joint)
     return out;
 }
 
-double measure::of_skin(const gltf_json &skin)
+double measure::of_joints(const gltf_json &skin)
 {
     double largest = 0;
     if (!skin.contains("joints"))
         return 1;
     const gltf_json &joints = skin["joints"];
     for (size_t i = 0; i < joints.size(); i++) {
-        const size_t node = joints[i].get<size_t>();
+        const size_t node = index_of(joints[i]);
         if (node < world.size())
             largest = std::fmax(largest,
                                 factor(multiply(world[node], bind(skin, i))));
@@ -192,10 +210,19 @@ double measure::of_skin(const gltf_json &skin)
     return largest;
 }
 
+double measure::of_skin(size_t skin)
+{
+    const auto found = skins.find(skin);
+    if (found != skins.end())
+        return found->second;
+    return skins[skin] = of_joints(list("skins")[skin]);
+}
+
 std::vector<double> measure::run()
 {
     std::vector<double> scales(list("meshes").size());
-    const gltf_json &nodes = list("nodes"), &skins = list("skins");
+    const gltf_json &nodes = list("nodes");
+    const size_t skin_count = list("skins").size();
 
     walk();
     for (size_t i = 0; i < nodes.size(); i++) {
@@ -203,9 +230,10 @@ std::vector<double> measure::run()
         if (!node.contains("mesh"))
             continue;
         const size_t mesh = node["mesh"].get<size_t>();
-        const size_t skin = node.value("skin", skins.size());
+        const size_t skin =
+            node.contains("skin") ? index_of(node["skin"]) : SIZE_MAX;
         const double scale =
-            skin < skins.size() ? of_skin(skins[skin]) : factor(world[i]);
+            skin < skin_count ? of_skin(skin) : factor(world[i]);
         if (mesh < scales.size())
             scales[mesh] = std::fmax(scales[mesh], scale);
     }
@@ -217,7 +245,8 @@ std::vector<double> measure::run()
 
 } // namespace
 
-std::vector<double> gltf_scales(const gltf_source &source)
+std::vector<double> gltf_scales(const gltf_source &source, gltf_sides &sides,
+                                gltf_budget &budget)
 {
-    return measure(source).run();
+    return measure(source, sides, budget).run();
 }

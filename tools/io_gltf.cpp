@@ -33,6 +33,7 @@ using tinygltf::Model;
 struct owner {
     Model model;
     std::vector<gltf_blob> blobs;
+    std::set<std::string> sides;
     std::vector<gltf_accessor> accessors;
     std::vector<gltf_primitive> primitives;
     std::vector<gltf_mesh> meshes;
@@ -200,6 +201,7 @@ void fill(const gltf_source &source, gltf_budget &budget, asset *warnings,
 
     load_model(plain, &o->model);
     o->blobs = std::move(plain.blobs);
+    o->sides = std::move(plain.sides);
     for (const Accessor &from : o->model.accessors)
         o->accessors.push_back(convert(*o, from));
     convert_meshes(*o);
@@ -226,6 +228,11 @@ void fill(const gltf_source &source, gltf_budget &budget, asset *warnings,
 }
 
 } // namespace
+
+const std::set<std::string> &gltf_sides_of(const gltf_model &model)
+{
+    return static_cast<const owner *>(model.owner)->sides;
+}
 
 bool gltf_load(const gltf_source *source, gltf_budget *budget, gltf_model *out,
                asset *warnings, asset_error *error)

@@ -182,9 +182,10 @@ void check_nodes(const gltf_model &model)
 /* The document is parsed anew by each who reads it, and let go of: parsed, it
  * takes up to twenty times its size. */
 void take_meshes(const gltf_source &source, const gltf_model &model,
-                 scene_parts *out, std::vector<gltf_stream> *streams)
+                 gltf_sides &sides, gltf_budget &budget, scene_parts *out,
+                 std::vector<gltf_stream> *streams)
 {
-    const std::vector<double> scales = gltf_scales(source);
+    const std::vector<double> scales = gltf_scales(source, sides, budget);
     const gltf_json in =
         gltf_json::parse(source.json, source.json + source.json_size);
     streamer taker(model, out, streams);
@@ -220,9 +221,10 @@ void read(const gltf_source &source, holder *held, scene_parts *out)
     check_nodes(model);
 
     std::vector<gltf_stream> streams(model.primitive_count);
-    take_meshes(source, model, out, &streams);
+    gltf_sides sides = { gltf_sides_of(model), {} };
+    take_meshes(source, model, sides, budget, out, &streams);
     const gltf_parts parts =
-        gltf_take_apart(source, model, streams, budget, &out->notes);
+        gltf_take_apart(source, model, streams, sides, budget, &out->notes);
     if (!pack_zlib(parts.document.data(), parts.document.size(),
                    &out->document))
         throw std::bad_alloc();

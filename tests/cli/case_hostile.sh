@@ -75,6 +75,18 @@ def side_buffers(d):
         d["meshes"].append({"primitives": [{"attributes": {"POSITION": i + 1},
                                             "indices": 1}]})
 
+# Bytes of a file beside, which buffers that geometry needs and one that only
+# an extension may need name: together more than they may come to, if the file
+# counts once.
+def side_twice(d):
+    d["buffers"].append({"byteLength": len(LONG), "uri": "long.png"})
+    d["bufferViews"] += [{"buffer": 1, "byteLength": 36},
+                         {"buffer": 1, "byteLength": len(LONG)}]
+    d["accessors"][0]["bufferView"] = 2
+    many = (64 << 20) // len(LONG) + 256 + 128
+    d["bufferViews"] += [d["bufferViews"][3]] * many
+    d["extensions"] = {"X_views": {"all": list(range(4, 4 + many))}}
+
 def factors(d):
     d["materials"] = [{"pbrMetallicRoughness": {
         "roughnessFactor": 1e300, "baseColorFactor": [-1e39, 0, 0, 1]}}]
@@ -89,6 +101,7 @@ write("views.glb", views, LONG)
 write("view-images.glb", view_images, LONG)
 write("side-images.glb", side_images)
 write("side-buffers.glb", side_buffers)
+write("side-twice.glb", side_twice)
 write("factors.glb", factors)
 PY
 python3 hostile.py
@@ -106,6 +119,7 @@ refused views 'the views are longer than a file of this size may have'
 refused view-images 'the views are longer than a file of this size may have'
 refused side-images 'read too often for a file of this size'
 refused side-buffers 'read too often for a file of this size'
+refused side-twice 'the views are longer than a file of this size may have'
 
 check 'factors beyond floats' 0 bake factors.glb -q -o x.pmesh
 check 'as OBJ' 0 extract x.pmesh -q -o x.obj
