@@ -3,6 +3,16 @@
 
 #include <stdlib.h>
 
+/* Adds instances x faces. A document may name a mesh often enough for a sum of
+ * such to pass 2^64, where no budget would be too small. */
+static void add_drawn(uint64_t *drawn, uint64_t instances, uint64_t faces)
+{
+    const uint64_t left = UINT64_MAX - *drawn;
+    *drawn = faces > 0 && instances > left / faces
+                 ? UINT64_MAX
+                 : *drawn + instances * faces;
+}
+
 /* What is not known yet counts once. */
 static void count_all(scene_budget *b, const pmesh_scene_header *h)
 {
@@ -12,7 +22,7 @@ static void count_all(scene_budget *b, const pmesh_scene_header *h)
     for (uint32_t i = 0; i < b->mesh_count; i++) {
         const pmesh_decoder *dec = pmesh_scene_mesh(b->scene, i);
         if (dec && pmesh_decoder_header(dec, &mesh) == PMESH_OK)
-            b->all += (b->instances[i] - 1) * mesh.faces;
+            add_drawn(&b->all, b->instances[i] - 1, mesh.faces);
     }
 }
 
@@ -52,7 +62,7 @@ uint64_t scene_budget_drawn(const scene_budget *b)
     for (uint32_t i = 0; i < b->mesh_count; i++) {
         const pmesh_decoder *dec = pmesh_scene_mesh(b->scene, i);
         if (dec && pmesh_decoder_mesh(dec, &view) == PMESH_OK)
-            drawn += b->instances[i] * view.face_count;
+            add_drawn(&drawn, b->instances[i], view.face_count);
     }
     return drawn;
 }
@@ -65,7 +75,7 @@ static uint64_t most_drawn(const scene_budget *b, uint64_t stored)
 
     pmesh_scene_share(b->scene, &target, b->share);
     for (uint32_t i = 0; i < b->mesh_count; i++)
-        drawn += b->instances[i] * b->share[i];
+        add_drawn(&drawn, b->instances[i], b->share[i]);
     return drawn;
 }
 

@@ -122,15 +122,25 @@ size_t scene_writer::image_of(const gltf_document &slot) const
                : SIZE_MAX;
 }
 
-/* The image's bytes, added to the library once; its ending, or nullptr. */
-const char *scene_writer::library_image(size_t number)
+/* Makes room for one more image: their array doubles. */
+static void reserve_image(scene_library *to)
+{
+    const size_t n = to->image_count;
+
+    if ((n & (n - 1)) != 0)
+        return; /* not full: it holds the next power of two */
+    scene_image *grown = static_cast<scene_image *>(
+        realloc(to->images, (n ? 2 * n : 1) * sizeof *to->images));
+    if (!grown)
+        throw std::bad_alloc();
+    to->images = grown;
+}
+
+/* The image's bytes, added to the library; its ending, or nullptr. */
+const char *scene_writer::add_image(const gltf_document &image, size_t number)
 {
     scene_library *to = style.library;
-    const gltf_document &image = doc["images"].at(number);
 
-    for (size_t i = 0; i < to->image_count; i++)
-        if (to->images[i].number == number)
-            return to->images[i].ending;
     if (!image.contains("bufferView"))
         return nullptr;
     const gltf_document &view =
@@ -141,16 +151,22 @@ const char *scene_writer::library_image(size_t number)
     const auto size = view.at("byteLength").get<uint64_t>();
     if (!all.data || offset > all.arrived || size > all.arrived - offset)
         return nullptr;
-    scene_image *grown = static_cast<scene_image *>(
-        realloc(to->images, (to->image_count + 1) * sizeof *to->images));
-    if (!grown)
-        throw std::bad_alloc();
     const uint8_t *data = static_cast<const uint8_t *>(all.data) + offset;
-    to->images = grown;
+    reserve_image(to);
     to->images[to->image_count++] = { number, data, static_cast<size_t>(size),
                                       ending_of(data,
                                                 static_cast<size_t>(size)) };
     return to->images[to->image_count - 1].ending;
+}
+
+/* The same once for all materials that show it. */
+const char *scene_writer::library_image(size_t number)
+{
+    const auto found = endings.find(number);
+
+    if (found != endings.end())
+        return found->second;
+    return endings[number] = add_image(doc["images"].at(number), number);
 }
 
 void scene_writer::library_map(const char *word, const gltf_document &slot)

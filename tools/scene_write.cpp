@@ -6,6 +6,7 @@
  */
 #include "tools/scene_write.h"
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 
@@ -45,8 +46,9 @@ std::vector<size_t> scene_writer::free_list(const char *name)
         const size_t at = number.get<size_t>();
         if (at >= size)
             throw std::runtime_error("a free place is out of range");
-        numbers.insert(numbers.begin(), at);
+        numbers.push_back(at);
     }
+    std::reverse(numbers.begin(), numbers.end()); /* the last is next */
     return numbers;
 }
 

@@ -42,6 +42,7 @@ private:
     std::vector<size_t> resource_start; /* in bin, or in the stream */
     std::vector<bool> in_stream;        /* by resource */
     std::vector<size_t> image_views;    /* that show one of these */
+    std::map<size_t, const char *> endings; /* by image of the library */
 
     void open();
     std::vector<size_t> free_list(const char *name);
@@ -65,6 +66,7 @@ private:
     void chain_node(size_t node, const std::vector<size_t> &chain);
     void use_extension(const char *name, bool required);
     size_t image_of(const gltf_document &slot) const;
+    const char *add_image(const gltf_document &image, size_t number);
     const char *library_image(size_t number);
     void library_map(const char *word, const gltf_document &slot);
     void library_material(const gltf_document &material);

@@ -3,11 +3,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "encoder/pmesh_scene_encode.h"
 #include "tests/unit/shapes.h"
 #include "tests/unit/test.h"
 #include "tools/pack.h"
+#include "tools/scene_budget.h"
 #include "tools/scene_parts.h"
 #include "tools/scene_write.h"
 
@@ -17,17 +19,14 @@ static int collect(void *user, const void *data, size_t size)
     return 0;
 }
 
-/* Whether a scene of one torus with this document is written as a .glb; if not,
- * there is a message. */
-static bool writes(const char *document)
+/* A scene of one torus with this document. */
+static pmesh_scene *scene_with(const char *document)
 {
     shape_mesh *shape = shape_make(SHAPE_TORUS, 8, 1);
     const pmesh_encoder_config config = pmesh_encoder_config_default();
     pmesh_encode_report report;
     shape_bytes stream;
-    asset_bytes file = { 0 }, out = { 0 };
-    asset notes = { 0 };
-    asset_error error = { "", "" };
+    asset_bytes file = { 0 };
     pmesh_scene *scene;
 
     CHECK(shape_bake(shape, &config, &stream, &report) == PMESH_OK);
@@ -42,14 +41,30 @@ static bool writes(const char *document)
     CHECK(pmesh_scene_encode(&input, NULL, collect, &file, NULL) == PMESH_OK);
     CHECK(pmesh_scene_create(&scene, NULL) == PMESH_OK);
     CHECK(pmesh_scene_feed(scene, file.data, file.size) == PMESH_OK);
-    const bool ok = scene_write(scene, (scene_style){ .glb = true }, &out,
-                                &notes, &error);
+    asset_bytes_free(&file);
+    free(stream.data);
+    return scene;
+}
+
+/* Whether it is written as a .glb; if not, there is a message. */
+static bool writes_with(const char *document, scene_library *library)
+{
+    asset_bytes out = { 0 };
+    asset notes = { 0 };
+    asset_error error = { "", "" };
+    pmesh_scene *scene = scene_with(document);
+    const scene_style style = { .glb = true, .library = library };
+
+    const bool ok = scene_write(scene, style, &out, &notes, &error);
     CHECK(ok || error.what[0] != '\0');
     pmesh_scene_destroy(scene);
-    asset_bytes_free(&file);
     asset_bytes_free(&out);
-    free(stream.data);
     return ok;
+}
+
+static bool writes(const char *document)
+{
+    return writes_with(document, NULL);
 }
 
 #define ASSET "\"asset\":{\"version\":\"2.0\"}"
@@ -88,6 +103,66 @@ TEST(scene_documents_that_lie_are_refused)
     };
     for (size_t i = 0; i < sizeof documents / sizeof *documents; i++)
         CHECK(!writes(documents[i]));
+}
+
+/* Places are taken from the front of a list in which they stand one by one:
+ * some seconds, if each moved the others. */
+TEST(scene_documents_may_have_many_free_places)
+{
+    enum { MANY = 400000 };
+    asset_bytes text = { 0 };
+    asset_printf(&text, "{" ASSET ",\"accessors\":[{}],\"meshes\":[{"
+                 "\"primitives\":[{\"attributes\":{},\"extensions\":{"
+                 "\"PMESH_progressive\":" TORUS "}}]}],\"extensions\":{"
+                 "\"PMESH_progressive\":{\"accessors\":[0");
+    for (int i = 0; i < MANY; i++)
+        asset_put(&text, ",0", 2);
+    asset_put(&text, "]}}}", 5); /* and the end of the string */
+    const clock_t start = clock();
+    CHECK(writes((const char *)text.data));
+    CHECK(clock() - start < 3 * CLOCKS_PER_SEC);
+    asset_bytes_free(&text);
+}
+
+TEST(scene_library_has_an_image_once)
+{
+    enum { IMAGES = 9 };
+    asset_bytes text = { 0 };
+    scene_library library = { .stem = "s" };
+    asset_printf(&text, "{" ASSET ",\"meshes\":[],\"bufferViews\":[{"
+                 "\"buffer\":0,\"byteLength\":5}],\"images\":[{}");
+    for (int i = 1; i < IMAGES; i++)
+        asset_printf(&text, ",{\"bufferView\":0}");
+    asset_printf(&text, "],\"textures\":[{\"source\":0}");
+    for (int i = 1; i < IMAGES; i++)
+        asset_printf(&text, ",{\"source\":%d}", i);
+    asset_printf(&text, "],\"materials\":[{}");
+    for (int i = 0; i < 3 * IMAGES; i++)
+        asset_printf(&text, ",{\"emissiveTexture\":{\"index\":%d}}",
+                     i % IMAGES);
+    asset_put(&text, "]}", 3);
+    CHECK(writes_with((const char *)text.data, &library));
+    CHECK(library.image_count == IMAGES - 1 && library.missing);
+    for (size_t i = 0; i < library.image_count; i++)
+        CHECK(library.images[i].number == i + 1 &&
+              library.images[i].size == 5 &&
+              memcmp(library.images[i].data, "01234", 5) == 0);
+    scene_library_free(&library);
+    asset_bytes_free(&text);
+}
+
+TEST(scene_budgets_do_not_wrap_around)
+{
+    pmesh_scene *scene = scene_with(PRIMITIVE(TORUS));
+    scene_budget budget;
+    asset_error error;
+    CHECK(scene_budget_open(scene, &budget, &error));
+    CHECK(scene_budget_drawn(&budget) > 4 && budget.stored > 4);
+    budget.instances[0] = UINT64_MAX / 4;
+    CHECK(scene_budget_drawn(&budget) == UINT64_MAX);
+    CHECK(scene_budget_stored(&budget, 1000000) == 1);
+    scene_budget_close(&budget);
+    pmesh_scene_destroy(scene);
 }
 
 /* A .gltf with one triangle in a data URI. */
