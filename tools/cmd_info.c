@@ -36,7 +36,8 @@ static const args_command command = {
     .option_count = sizeof option_table / sizeof *option_table,
     .details =
         "\"-\" is standard input. Nothing behind the header is checked: see "
-        "pmesh verify.\nThe JSON object always holds the level table.\n\n"
+        "pmesh verify.\nThe JSON object always holds the level table, and all "
+        "materials and meshes\nwhere the text ends with \"and N more\".\n\n"
         "  pmesh info bunny.pmesh --levels\n"
         "  head -c 10k bunny.pmesh | pmesh info -\n",
 };
@@ -56,16 +57,22 @@ static void print_attributes(const pmesh_header *h)
     putchar('\n');
 }
 
+/* Those without a name are counted only, and so are those behind the first. */
 static void print_materials(const stream *s)
 {
+    enum { SHOWN = 32 };
+    uint32_t named = 0;
+
     printf("materials    %" PRIu32, s->header.material_count);
     for (uint32_t i = 0; i < s->header.material_count; i++) {
         const char *name = pmesh_decoder_material_name(s->decoder, i);
-        if (*name) {
-            printf(i > 0 ? ", " : ": ");
-            report_put(stdout, name);
-        }
+        if (!*name || named++ >= SHOWN)
+            continue;
+        printf(i > 0 ? ", " : ": ");
+        report_put(stdout, name);
     }
+    if (named > SHOWN)
+        printf(" and %" PRIu32 " more", named - SHOWN);
     putchar('\n');
 }
 

@@ -32,12 +32,32 @@ static bool mesh_header(const scene_file *file, uint32_t i, pmesh_header *out)
     return dec && pmesh_decoder_header(dec, out) == PMESH_OK;
 }
 
+static void print_meshes(const scene_file *file)
+{
+    enum { SHOWN = 32 };
+    const uint32_t count = file->header.mesh_count;
+    pmesh_header mesh;
+
+    printf("meshes       %" PRIu32 "\n", count);
+    for (uint32_t i = 0; i < count && i < SHOWN; i++) {
+        printf("  %4" PRIu32 "       ", i);
+        if (!mesh_header(file, i, &mesh))
+            printf("not there yet\n");
+        else
+            printf("%" PRIu32 " faces, %" PRIu32 " attributes, %" PRIu64
+                   " bytes, scale %.4g\n",
+                   mesh.faces, mesh.attribute_count, mesh.bytes,
+                   (double)pmesh_scene_scale(file->scene, i));
+    }
+    if (count > SHOWN)
+        printf("             and %" PRIu32 " more\n", count - SHOWN);
+}
+
 static void print_text(const char *path, const scene_file *file,
                        const file_data *data, bool levels)
 {
     const pmesh_scene_header *h = &file->header;
     const pmesh_scene_level *all = &h->levels[h->level_count - 1];
-    pmesh_header mesh;
 
     printf("file         ");
     report_put(stdout, file_input_name(path));
@@ -52,17 +72,7 @@ static void print_text(const char *path, const scene_file *file,
     printf("document     %" PRIu64 " bytes\n", h->document_bytes);
     printf("resources    %" PRIu32 ", %" PRIu64 " bytes\n", h->resource_count,
            resource_bytes(file));
-    printf("meshes       %" PRIu32 "\n", h->mesh_count);
-    for (uint32_t i = 0; i < h->mesh_count; i++) {
-        printf("  %4" PRIu32 "       ", i);
-        if (!mesh_header(file, i, &mesh))
-            printf("not there yet\n");
-        else
-            printf("%" PRIu32 " faces, %" PRIu32 " attributes, %" PRIu64
-                   " bytes, scale %.4g\n",
-                   mesh.faces, mesh.attribute_count, mesh.bytes,
-                   (double)pmesh_scene_scale(file->scene, i));
-    }
+    print_meshes(file);
     if (!levels)
         return;
     printf("\nlevel       bytes       faces    vertices       error\n");

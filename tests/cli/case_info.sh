@@ -65,3 +65,30 @@ flip_last=$((bytes - 1))
 cp t.pmesh bad.pmesh
 flip bad.pmesh $flip_last
 check 'verify finds a flipped bit at the end' 4 verify bad.pmesh
+
+# More than anybody reads.
+awk 'BEGIN { for (i = 0; i < 300; i++) {
+                 print "v", i, 0, 0; print "v", i, 1, 0; print "v", i, 0, 1
+                 print "usemtl m" i; print "f -1 -2 -3" } }' >many.obj
+check 'bake many materials' 0 bake many.obj -q -o many.pmesh
+check 'info of them' 0 info many.pmesh
+ok 'it names some' out '^materials    300: m0, m1, .*, m31 and 268 more$'
+check 'info --json of them' 0 info many.pmesh --json
+ok 'names all' out '"m299"'
+awk 'BEGIN { print "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": ["
+             for (i = 0; i < 40; i++) print (i ? "," : "") "{\"mesh\": " i "}"
+             print "], \"meshes\": ["
+             for (i = 0; i < 40; i++) print (i ? "," : "") "{\"primitives\": " \
+                 "[{\"attributes\": {\"POSITION\": 0}}]}"
+             print "], \"accessors\": [{\"bufferView\": 0, \"count\": 3, " \
+                 "\"componentType\": 5126, \"type\": \"VEC3\"}], " \
+                 "\"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], " \
+                 "\"buffers\": [{\"byteLength\": 36, \"uri\": \"data:;base64," \
+                 "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}" }' \
+    >many.gltf
+check 'bake many meshes' 0 bake many.gltf -q -o many.pmesh
+check 'info of them' 0 info many.pmesh
+ok 'it shows some' out '^ *and 8 more$'
+ok 'the first 32' test "$(grep -c ' faces, 0 attributes' "$work/out")" = 32
+check 'info --json of them' 0 info many.pmesh --json
+ok 'has all' test "$(grep -c '"base_bytes"\|"base_faces"' "$work/out")" = 41
