@@ -179,6 +179,7 @@ static void contract(enc_run *run, const enc_pair *pair, const enc_link *link,
                           out->wedge_parent);
     else
         enc_surface_contract(s, pair, offer->place, out->wedge_parent);
+    enc_looks_contract(&run->pricing.looks, s, pair->parent);
 }
 
 /* How far the original may be once the pair is one, in steps: what went before

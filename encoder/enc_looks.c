@@ -4,17 +4,20 @@
 #include <math.h>
 #include <string.h>
 
+#include "encoder/enc_bits.h"
 #include "encoder/enc_joint.h"
 #include "encoder/enc_wedges.h"
 #include "format/alloc.h"
 #include "format/quantize.h"
 
-/* e, f, the normal, the area. */
-enum { FRAME_MAX = 2 * (3 + ENC_JOINT_MAX) + 4 };
+/* The area; the quadric's matrix, which the position alone is asked for by; e
+ * and f. */
+enum { MATRIX = 1, EDGES = MATRIX + 6 };
+enum { FRAME_MAX = EDGES + 2 * (3 + ENC_JOINT_MAX) };
 
 static size_t stride_of(const enc_looks *looks)
 {
-    return 2 * (3 + (size_t)looks->count) + 4;
+    return EDGES + 2 * (3 + (size_t)looks->count);
 }
 
 /* ---- values -------------------------------------------------------------- */
@@ -82,12 +85,16 @@ pmesh_status enc_looks_create(const enc_mesh *mesh, enc_looks *out)
                              sizeof *out->value);
     out->frame = pmesh_alloc(a, mesh->face_count * stride_of(out),
                              sizeof *out->frame);
-    if (!out->value || !out->frame ||
+    out->stale = pmesh_alloc(a, enc_bit_words(mesh->face_count),
+                             sizeof *out->stale);
+    if (!out->value || !out->frame || !out->stale ||
         !enc_looks_fate(out, mesh, &out->fate)) {
         enc_looks_destroy(mesh, out);
         return PMESH_E_MEMORY;
     }
     load_values(out, mesh);
+    memset(out->stale, 0xff,
+           enc_bit_words(mesh->face_count) * sizeof *out->stale);
     return PMESH_OK;
 }
 
@@ -99,6 +106,8 @@ void enc_looks_destroy(const enc_mesh *mesh, enc_looks *looks)
                   sizeof *looks->value);
     pmesh_release(a, looks->frame, mesh->face_count * stride_of(looks),
                   sizeof *looks->frame);
+    pmesh_release(a, looks->stale, enc_bit_words(mesh->face_count),
+                  sizeof *looks->stale);
     pmesh_release(a, looks->fate, mesh->wedge_count, sizeof *looks->fate);
     *looks = (enc_looks){ 0 };
 }
@@ -123,7 +132,7 @@ static void make_frame(const enc_looks *looks, const enc_surface *s,
     const unsigned m = looks->count;
     const uint32_t h = 3 * face;
     const int32_t *at = s->position[s->vertex[h]];
-    double *e = frame, *f = e + 3 + m, *normal = f + 3 + m;
+    double *e = frame + EDGES, *f = e + 3 + m, n[3];
     double place[2][3], value[2][ENC_JOINT_MAX];
 
     for (uint32_t k = 0; k < 2; k++) {
@@ -132,16 +141,19 @@ static void make_frame(const enc_looks *looks, const enc_surface *s,
             place[k][i] = (double)(to[i] - at[i]);
         step_between(looks, s->wedge[h + 1 + k], s->wedge[h], value[k]);
     }
-    enc_surface_normal(s, h, at, normal);
-    const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] +
-                               normal[2] * normal[2]);
-    normal[3] = 0;
+    enc_surface_normal(s, h, at, n);
+    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    frame[0] = 0;
     if (!(length > 0) || !enc_joint_frame(m, place[0], value[0], place[1],
                                           value[1], e, f))
         return;
     for (int i = 0; i < 3; i++)
-        normal[i] /= length;
-    normal[3] = 0.5 * length;
+        n[i] /= length;
+    const double area = frame[0] = 0.5 * length;
+    for (unsigned i = 0, k = MATRIX; i < 3; i++)
+        for (unsigned j = i; j < 3; j++)
+            frame[k++] = area * ((i == j) - n[i] * n[j] - e[i] * e[j] -
+                                 f[i] * f[j]);
 }
 
 uint32_t enc_looks_parts(const enc_looks *looks, const enc_mesh *mesh)
@@ -152,32 +164,42 @@ uint32_t enc_looks_parts(const enc_looks *looks, const enc_mesh *mesh)
 void enc_looks_begin(enc_looks *looks, const enc_surface *s, uint32_t part)
 {
     const uint32_t count = s->mesh->face_count, first = part * ENC_BLOCK;
+    const uint32_t end = count - first < ENC_BLOCK ? count : first + ENC_BLOCK;
 
-    for (uint32_t f = first; f < first + ENC_BLOCK && f < count; f++)
-        if (s->vertex[3 * f] != ENC_NONE)
+    for (uint32_t f = first; f < end; f++)
+        if (enc_bit_get(looks->stale, f) && s->vertex[3 * f] != ENC_NONE)
             make_frame(looks, s, f, looks->frame + f * stride_of(looks));
+    /* Blocks are words of their own. */
+    memset(looks->stale + first / 32, 0,
+           enc_bit_words(end - first) * sizeof *looks->stale);
 }
 
-/* step: in the attributes; NULL: none. */
-static void add_face(const enc_looks *looks, const double frame[],
+void enc_looks_contract(enc_looks *looks, const enc_surface *s,
+                        uint32_t parent)
+{
+    if (looks->count == 0)
+        return;
+    uint32_t start = s->first[parent];
+    for (uint32_t h = start; h != ENC_NONE; h = enc_around(s, &start, h))
+        enc_bit_put(looks->stale, h / 3);
+}
+
+/* At a step in the attributes. */
+static void add_step(const enc_looks *looks, const double frame[],
                      const double step[], enc_quadric *q)
 {
     const unsigned m = looks->count;
-    const double *e = frame, *f = e + 3 + m, *n = f + 3 + m;
-    const double area = n[3];
+    const double *e = frame + EDGES, *f = e + 3 + m;
+    const double area = frame[0];
     double along_e = 0, along_f = 0, square = 0;
 
-    for (unsigned i = 0; step && i < m; i++) {
+    for (unsigned i = 0; i < m; i++) {
         along_e += e[3 + i] * step[i];
         along_f += f[3 + i] * step[i];
         square += step[i] * step[i];
     }
-    for (unsigned i = 0, k = 0; i < 3; i++) {
-        for (unsigned j = i; j < 3; j++)
-            q->a[k++] += area * ((i == j) - n[i] * n[j] - e[i] * e[j] -
-                                 f[i] * f[j]);
+    for (unsigned i = 0; i < 3; i++)
         q->b[i] -= area * (e[i] * along_e + f[i] * along_f);
-    }
     q->c += area * (square - along_e * along_e - along_f * along_f);
 }
 
@@ -192,15 +214,18 @@ static void add_around(const enc_looks *looks, const enc_surface *s,
         const double *frame = looks->frame + h / 3 * stride_of(looks);
         const uint32_t to = fate ? fate[s->wedge[h]] : ENC_NONE;
         double own[FRAME_MAX], step[ENC_JOINT_MAX];
-        if (now) {
+        if (now && enc_bit_get(looks->stale, h / 3)) {
             make_frame(looks, s, h / 3, own);
             frame = own;
         }
-        if (!(frame[stride_of(looks) - 1] > 0))
+        if (!(frame[0] > 0))
             continue;
-        if (to != ENC_NONE)
-            step_between(looks, to, s->wedge[h], step);
-        add_face(looks, frame, to != ENC_NONE ? step : NULL, q);
+        for (unsigned k = 0; k < 6; k++)
+            q->a[k] += frame[MATRIX + k];
+        if (to == ENC_NONE)
+            continue;
+        step_between(looks, to, s->wedge[h], step);
+        add_step(looks, frame, step, q);
     }
 }
 

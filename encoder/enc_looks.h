@@ -26,8 +26,9 @@
 typedef struct enc_looks {
     unsigned count; /* m; 0: attributes have no say, and nothing is there */
     float *value;    /* per wedge, m: as lengths, in steps */
-    double *frame;   /* per face, as it was when the batch began: e and f of
-                        3 + m, then the unit normal and the area */
+    double *frame;   /* per face, as it was when the batch began: area, matrix
+                        of the quadric, e and f of 3 + m */
+    uint32_t *stale; /* bit per face: it is not as it was then any more */
     uint32_t *fate;  /* per wedge: see enc_looks_expect() */
     bool turns[PMESH_MAX_ATTRIBUTES];    /* channels that must not turn over, */
     uint8_t first[PMESH_MAX_ATTRIBUTES]; /* and their first coded component */
@@ -42,6 +43,10 @@ void enc_looks_destroy(const enc_mesh *mesh, enc_looks *looks);
  * attributes have no say. False if memory is out. */
 bool enc_looks_fate(const enc_looks *looks, const enc_mesh *mesh,
                     uint32_t **fate);
+
+/* Told behind a contraction. */
+void enc_looks_contract(enc_looks *looks, const enc_surface *s,
+                        uint32_t parent);
 
 /* Takes the faces as they are now, part by part: in any order. */
 uint32_t enc_looks_parts(const enc_looks *looks, const enc_mesh *mesh);

@@ -7,6 +7,7 @@
 #include "format/alloc.h"
 #include "format/cut.h"
 #include "format/residual.h"
+#include "format/value.h"
 
 /* Where cuts are coded: the vertex, its ring, and the ring's parents. */
 enum {
@@ -25,6 +26,7 @@ struct enc_relay {
     /* Of the thread behind. */
     pmesh_coder *coder;
     size_t written;     /* up to the last part */
+    uint64_t spent;     /* up to the last attribute, or part */
     pmesh_codec around; /* stands for the codec's surroundings of a cut */
     pmesh_ring ring;
     int32_t position[AROUND + 1][3];
@@ -35,23 +37,37 @@ struct enc_relay {
 
 /* ---- what is told -------------------------------------------------------- */
 
-typedef enum kind { FLAG, CUT, RESIDUAL, PART } kind;
+typedef enum kind {
+    BIT,
+    NUMBER,
+    RAW,
+    CUT,
+    RESIDUAL,
+    VALUES,
+    SPENT,
+    PART
+} kind;
 
-typedef struct flag {
+/* Without more to them: bits and numbers, attributes and parts. */
+typedef struct plain {
     kind kind;
-    bool splits;
-    pmesh_bit *model;
-} flag;
+    uint32_t value;
+    union {
+        pmesh_bit *bit;
+        pmesh_number *number;
+        unsigned count; /* of bits */
+    } by;
+} plain;
 
 typedef struct residual {
     kind kind;
     pmesh_residual coded;
 } residual;
 
-typedef struct part {
+typedef struct values {
     kind kind;
-    int part;
-} part;
+    pmesh_outlook outlook;
+} values;
 
 typedef struct member {
     int32_t position[3];
@@ -68,11 +84,25 @@ typedef struct cut {
     int32_t position[3];
 } cut;
 
-static void tell_flag(void *user, pmesh_bit *model, bool splits)
+static void tell_plain(const enc_relay *r, plain what)
 {
-    const enc_relay *r = user;
-    flag *f = enc_pipe_room(r->pipe, sizeof *f);
-    *f = (flag){ FLAG, splits, model };
+    plain *p = enc_pipe_room(r->pipe, sizeof *p);
+    *p = what;
+}
+
+static void tell_bit(void *user, pmesh_bit *model, unsigned bit)
+{
+    tell_plain(user, (plain){ BIT, bit, { .bit = model } });
+}
+
+static void tell_number(void *user, pmesh_number *model, uint32_t value)
+{
+    tell_plain(user, (plain){ NUMBER, value, { .number = model } });
+}
+
+static void tell_raw(void *user, unsigned count, uint32_t value)
+{
+    tell_plain(user, (plain){ RAW, value, { .count = count } });
 }
 
 static void tell_residual(void *user, const pmesh_residual *coded)
@@ -83,11 +113,23 @@ static void tell_residual(void *user, const pmesh_residual *coded)
     t->coded = *coded;
 }
 
-static void tell_part(void *user, int which)
+static void tell_values(void *user, const pmesh_outlook *outlook)
 {
     const enc_relay *r = user;
-    part *p = enc_pipe_room(r->pipe, sizeof *p);
-    *p = (part){ PART, which };
+    values *t = enc_pipe_room(r->pipe, sizeof *t);
+    t->kind = VALUES;
+    t->outlook = *outlook;
+}
+
+static void tell_spent(void *user, uint32_t attribute)
+{
+    tell_plain(user, (plain){ SPENT, attribute, { NULL } });
+}
+
+static void tell_part(void *user, int part)
+{
+    const enc_relay *r = user;
+    tell_plain(r, (plain){ PART, (uint32_t)part, { NULL } });
     enc_pipe_flush(r->pipe);
 }
 
@@ -150,36 +192,50 @@ static void code_cut(enc_relay *r, const cut *t)
     pmesh_cut_code(&r->around, r->coder, 0, &r->ring, &same);
 }
 
-static void count_part(enc_relay *r, int which)
+static void code_values(enc_relay *r, const values *t)
 {
-    r->codec->part_size[which] += r->coder->out->size - r->written;
+    pmesh_outlook same = t->outlook;
+    pmesh_outlook_code(r->codec, r->coder, &same);
+}
+
+static void count_part(enc_relay *r, uint32_t part)
+{
+    r->codec->part_size[part] += r->coder->out->size - r->written;
     r->written = r->coder->out->size;
+    r->spent = pmesh_coder_spent(r->coder);
+}
+
+static void code_plain(enc_relay *r, const plain *p)
+{
+    if (p->kind == BIT)
+        pmesh_code_bit(r->coder, p->by.bit, p->value);
+    else if (p->kind == NUMBER)
+        pmesh_code_number(r->coder, p->by.number, p->value);
+    else if (p->kind == RAW)
+        pmesh_code_raw(r->coder, p->by.count, p->value);
+    else if (p->kind == SPENT)
+        pmesh_values_spent(r->codec, r->coder, p->value, &r->spent);
+    else
+        count_part(r, p->value);
 }
 
 static void follow(void *user, uint32_t whole, unsigned worker)
 {
     enc_relay *r = user;
-    const kind *told;
+    const void *told;
     (void)whole;
     (void)worker;
     while ((told = enc_pipe_next(r->pipe))) {
-        const void *what = told;
-        const flag *f = what;
-        const residual *p = what;
-        switch (*told) {
-        case FLAG:
-            pmesh_code_bit(r->coder, f->model, f->splits);
-            break;
-        case CUT:
-            code_cut(r, what);
-            break;
-        case RESIDUAL:
+        const kind *what = told;
+        const residual *p = told;
+        if (*what == CUT)
+            code_cut(r, told);
+        else if (*what == RESIDUAL)
             pmesh_residual_code_again(r->coder, r->codec->bounds, &p->coded);
-            break;
-        case PART:
-            count_part(r, ((const part *)what)->part);
-            break;
-        }
+        else if (*what == VALUES)
+            code_values(r, told);
+        else
+            code_plain(r, told);
     }
 }
 
@@ -221,17 +277,15 @@ static bool lay_around(enc_relay *r)
 enc_relay *enc_relay_create(const pmesh_allocator *a, enc_pool *pool,
                             pmesh_codec *codec)
 {
-    if (!pool || codec->sizes.joined || codec->sizes.value_count > 0 ||
-        codec->sizes.material_count > 1)
-        return NULL;
-    enc_relay *r = pmesh_alloc_zero(a, 1, sizeof *r);
+    enc_relay *r = pool ? pmesh_alloc_zero(a, 1, sizeof *r) : NULL;
     if (!r)
         return NULL;
     r->allocator = *a;
     r->pool = pool;
     r->codec = codec;
-    r->front = (pmesh_relay){ r, tell_flag, tell_cut, tell_residual,
-                              tell_part };
+    r->front = (pmesh_relay){ r,          tell_bit,      tell_number,
+                              tell_raw,   tell_cut,      tell_residual,
+                              tell_values, tell_spent,   tell_part };
     r->pipe = enc_pipe_create(a);
     if (r->pipe && lay_around(r))
         return r;

@@ -4,9 +4,9 @@
  *
  * The encoder knows what the stream will say. So one thread can walk through
  * the mesh without a look at the models of what is coded there, and the other,
- * behind it, codes what that tells: flags; cuts, with what they need of the
- * mesh around; and positions, with what is expected of them. The bytes are
- * those of one thread.
+ * behind it, codes what that tells: bits and numbers; cuts, with what they need
+ * of the mesh around; positions and attributes, with what is expected of them.
+ * The bytes are those of one thread.
  */
 #ifndef ENC_RELAY_H
 #define ENC_RELAY_H
@@ -17,8 +17,7 @@
 typedef struct enc_relay enc_relay;
 
 /* For blocks of `codec`, from now on all of them: it has the models of cuts.
- * NULL if there is no pool or no memory, or if the mesh has attributes,
- * materials or vertices of several fans; it can be done without. */
+ * NULL if there is no pool or no memory; it can be done without. */
 enc_relay *enc_relay_create(const pmesh_allocator *allocator, enc_pool *pool,
                             pmesh_codec *codec);
 void enc_relay_destroy(enc_relay *relay); /* or NULL */

@@ -21,6 +21,7 @@
 #include "format/lanes.h"
 #include "format/mesh.h"
 #include "format/models.h"
+#include "format/relay.h"
 
 /* Visit state of a vertex within a level. */
 typedef enum pmesh_visit {
@@ -31,9 +32,6 @@ typedef enum pmesh_visit {
     PMESH_GHOST = 4,   /* what lies across a boundary */
     PMESH_QUEUED = 8   /* beside PMESH_UNVISITED: it is in the order */
 } pmesh_visit;
-
-struct pmesh_codec;
-struct pmesh_residual; /* see residual.h */
 
 typedef struct pmesh_fans pmesh_fans; /* see join.h */
 typedef struct pmesh_parting pmesh_parting;
@@ -73,19 +71,6 @@ typedef struct pmesh_oracle {
     const uint16_t *(*values)(void *user, uint32_t wedge);
     uint32_t (*material)(void *user, uint32_t face);
 } pmesh_oracle;
-
-/* Takes what an encoding coder is given, so that another thread codes it, in
- * the order of the calls; only of meshes that are not joined and have neither
- * attributes nor materials. What is pointed at may change behind a call, but for
- * models, which the walk does not look into. */
-typedef struct pmesh_relay {
-    void *user;
-    void (*flag)(void *user, pmesh_bit *model, bool splits);
-    void (*cut)(void *user, const struct pmesh_codec *c, uint32_t v,
-                const pmesh_ring *ring, const pmesh_cut *cut);
-    void (*residual)(void *user, const struct pmesh_residual *residual);
-    void (*part)(void *user, int part); /* ends here: see part_size */
-} pmesh_relay;
 
 /* The block being coded: what it appends to the mesh. */
 typedef struct pmesh_block {

@@ -18,7 +18,7 @@
 
 typedef struct pmesh_coder {
     bool encoding;
-    const struct pmesh_relay *relay; /* encoding: see codec.h; or NULL */
+    const struct pmesh_relay *relay; /* encoding: see relay.h; or NULL */
     uint64_t range;
     uint64_t code;     /* decoding: offset into the range */
     uint64_t low;      /* encoding: where the range starts */

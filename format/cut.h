@@ -16,4 +16,15 @@ uint64_t pmesh_cut_room(void);
 void pmesh_cut_code(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
                     const pmesh_ring *ring, pmesh_cut *cut);
 
+/* The same, or the relay. */
+static inline void pmesh_cut_tell(pmesh_codec *c, pmesh_coder *coder,
+                                  uint32_t v, const pmesh_ring *ring,
+                                  pmesh_cut *cut)
+{
+    if (coder->relay)
+        coder->relay->cut(coder->relay->user, c, v, ring, cut);
+    else
+        pmesh_cut_code(c, coder, v, ring, cut);
+}
+
 #endif

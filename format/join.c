@@ -37,14 +37,14 @@ static void code_ways(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
     unsigned any = 0, last = 0; /* was one cut; what the last whole one did */
     for (uint32_t i = 0; i < fans->count; i++) {
         pmesh_bit *whole = &models->whole[fans->count == 1 ? 0 : 1 + any];
-        if (!pmesh_code_bit(coder, whole, p->way[i] != PMESH_FAN_CUT)) {
+        if (!pmesh_tell_bit(coder, whole, p->way[i] != PMESH_FAN_CUT)) {
             p->way[i] = PMESH_FAN_CUT;
-            pmesh_cut_code(c, coder, v, &fans->ring[i], &p->cut[i]);
+            pmesh_cut_tell(c, coder, v, &fans->ring[i], &p->cut[i]);
             any = 1;
             continue;
         }
         const unsigned moves =
-            pmesh_code_bit(coder, &models->moves[any][last],
+            pmesh_tell_bit(coder, &models->moves[any][last],
                            p->way[i] == PMESH_FAN_MOVES);
         p->way[i] = moves ? PMESH_FAN_MOVES : PMESH_FAN_STAYS;
         last = 1 + moves;
@@ -80,19 +80,19 @@ static uint32_t code_third(pmesh_codec *c, pmesh_coder *coder,
     pmesh_join_models *models = &c->models.join;
     const uint32_t n = c->mesh.vertex_count;
     const uint32_t place = place_of(fans, third);
-    if (!pmesh_code_bit(coder, &models->far, place == PMESH_NONE))
+    if (!pmesh_tell_bit(coder, &models->far, place == PMESH_NONE))
         return member_at(fans,
-                         pmesh_code_number(coder, &models->member, place));
-    third = pmesh_code_raw(coder, pmesh_bit_length(n - 1), third);
+                         pmesh_tell_number(coder, &models->member, place));
+    third = pmesh_tell_raw(coder, pmesh_bit_length(n - 1), third);
     return third < n ? third : PMESH_NONE;
 }
 
 static pmesh_lone code_kind(pmesh_join_models *models, pmesh_coder *coder,
                             pmesh_lone kind)
 {
-    if (pmesh_code_bit(coder, &models->pair, kind == PMESH_LONE_PAIR))
+    if (pmesh_tell_bit(coder, &models->pair, kind == PMESH_LONE_PAIR))
         return PMESH_LONE_PAIR;
-    return pmesh_code_bit(coder, &models->turned, kind == PMESH_LONE_TURNED)
+    return pmesh_tell_bit(coder, &models->turned, kind == PMESH_LONE_TURNED)
                ? PMESH_LONE_TURNED
                : PMESH_LONE_FACE;
 }
@@ -107,7 +107,7 @@ static bool code_lone(pmesh_codec *c, pmesh_coder *coder, uint32_t v,
         context |= p->way[i] == PMESH_FAN_CUT;
     for (uint32_t i = 0; i < PMESH_MAX_LONE; i++, context = 2) {
         p->lone_count = i;
-        if (!pmesh_code_bit(coder, &models->lone[context], i < wanted))
+        if (!pmesh_tell_bit(coder, &models->lone[context], i < wanted))
             return true;
         p->lone[i] = code_kind(models, coder, p->lone[i]);
         p->third[i] = code_third(c, coder, fans, p->third[i]);

@@ -197,10 +197,7 @@ static pmesh_status split(pmesh_codec *c, pmesh_coder *coder,
     pmesh_cut cut = { 0, 0 };
     if (oracle)
         oracle->cut(oracle->user, v, ring, &cut);
-    if (coder->relay)
-        coder->relay->cut(coder->relay->user, c, v, ring, &cut);
-    else
-        pmesh_cut_code(c, coder, v, ring, &cut);
+    pmesh_cut_tell(c, coder, v, ring, &cut);
 
     const uint32_t faces =
         cut.first != PMESH_NONE && cut.end != PMESH_NONE ? 2 : 1;
@@ -237,11 +234,8 @@ static bool code_flag(pmesh_codec *c, pmesh_coder *coder,
                       uint32_t size)
 {
     pmesh_bit *flag = &c->models.flag[flag_context(seen, size)];
-    const bool splits = oracle && oracle->splits(oracle->user, v);
-    if (!coder->relay)
-        return pmesh_code_bit(coder, flag, splits);
-    coder->relay->flag(coder->relay->user, flag, splits);
-    return splits;
+    return pmesh_tell_bit(coder, flag,
+                          oracle && oracle->splits(oracle->user, v));
 }
 
 static pmesh_status visit(pmesh_codec *c, pmesh_coder *coder,

@@ -36,13 +36,12 @@ typedef struct subject {
     int32_t centre;      /* of codes of normals */
     bool shaped;         /* the surface tells something about the first */
     int64_t shape[3];    /* components: in 1/FRACTION */
-    int64_t error[2];    /* of the components before */
     int32_t neighbour[PMESH_MAX_RING][PMESH_MAX_COMPONENTS];
 } subject;
 
 /* In 1/FRACTION: of a component. */
 typedef struct guess {
-    int64_t mean, value, spread;
+    int64_t mean, value;
     int64_t term[PMESH_FIT_TERMS];
 } guess;
 
@@ -109,28 +108,26 @@ static void look_around(subject *s)
         look_at(s, stored(s, a->wedge[i]), s->neighbour[i]);
 }
 
-/* ---- prediction ---------------------------------------------------------- */
-
-static void find_terms(const subject *s, uint32_t k, guess *g)
+static pmesh_prospect prospect(const subject *s, uint32_t k)
 {
     const pmesh_surround *a = s->around;
     const int64_t n = a->count;
     int64_t sum = 0, affine = 0, close = 0;
+    pmesh_prospect p = { 0 };
     for (uint32_t i = 0; i < a->count; i++) {
         sum += s->neighbour[i][k];
         affine += (int64_t)s->neighbour[i][k] * a->affine[i];
         close += (int64_t)s->neighbour[i][k] * a->close[i];
     }
-    g->mean = (sum * FRACTION + n / 2) / n;
+    p.mean = (sum * FRACTION + n / 2) / n;
     for (uint32_t i = 0; i < a->count; i++)
-        g->spread += size_of(s->neighbour[i][k] * FRACTION - g->mean);
-    g->spread /= n;
-    g->term[AFFINE] = (affine >> (WEIGHT_BITS - FRACTION_BITS)) - g->mean;
-    g->term[CLOSE] = (close >> (WEIGHT_BITS - FRACTION_BITS)) - g->mean;
+        p.spread += size_of(s->neighbour[i][k] * FRACTION - p.mean);
+    p.spread /= n;
+    p.affine = (affine >> (WEIGHT_BITS - FRACTION_BITS)) - p.mean;
+    p.close = (close >> (WEIGHT_BITS - FRACTION_BITS)) - p.mean;
     if (s->shaped && k < 3)
-        g->term[SHAPE] = s->shape[k] - g->mean;
-    g->term[BEFORE] = s->error[0];
-    g->term[BEFORE_THAT] = s->error[1];
+        p.shape = s->shape[k] - p.mean;
+    return p;
 }
 
 /* Where nothing around is known. */
@@ -144,21 +141,26 @@ static int64_t blind_guess(const subject *s, uint32_t k)
     return (int64_t)s->c->component_max[s->channel->first + k] * FRACTION / 2;
 }
 
-static void predict(const subject *s, uint32_t k, const pmesh_fit *fit,
-                    guess *g)
+/* ---- prediction ---------------------------------------------------------- */
+
+/* error: of the components before. */
+static guess predict(const pmesh_prospect *p, const int64_t error[2],
+                     bool alone, int64_t limit, const pmesh_fit *fit)
 {
-    const int64_t limit =
-        (int64_t)s->c->component_max[s->channel->first + k] * FRACTION;
+    guess g = { .mean = p->mean };
     int64_t sum = 0;
-    memset(g, 0, sizeof *g);
-    if (s->around->count)
-        find_terms(s, k, g);
-    else
-        g->mean = blind_guess(s, k);
+    if (!alone) {
+        g.term[AFFINE] = p->affine;
+        g.term[CLOSE] = p->close;
+        g.term[SHAPE] = p->shape;
+        g.term[BEFORE] = error[0];
+        g.term[BEFORE_THAT] = error[1];
+    }
     for (int t = 0; t < PMESH_FIT_TERMS; t++)
-        sum += g->term[t] * fit->weight[t];
-    g->value = g->mean + (sum >> WEIGHT_BITS);
-    g->value = g->value < 0 ? 0 : g->value > limit ? limit : g->value;
+        sum += g.term[t] * fit->weight[t];
+    g.value = g.mean + (sum >> WEIGHT_BITS);
+    g.value = g.value < 0 ? 0 : g.value > limit ? limit : g.value;
+    return g;
 }
 
 /* ---- learning ------------------------------------------------------------ */
@@ -218,20 +220,27 @@ static unsigned spread_class(int64_t spread)
     return bits < PMESH_VALUE_SPREADS ? bits : PMESH_VALUE_SPREADS - 1;
 }
 
-/* Codes component k. *far: how far off the one before was, 0 if there is none;
- * in and out. False if it is out of range. */
-static bool code_component(pmesh_codec *c, pmesh_coder *coder, subject *s,
-                           uint32_t k, int32_t *value, unsigned *far)
-{
-    pmesh_value_models *m = &c->value_models[s->channel->first + k];
-    pmesh_channel_models *all = &c->channel_models[s->channel - c->channel];
-    const unsigned group = count_class(s->around->count);
-    pmesh_fit *fit = &m->fit[group < 3 ? 0 : group - 2];
-    guess g;
-    predict(s, k, fit, &g);
+/* What was coded of an attribute. */
+typedef struct past {
+    int64_t error[2]; /* of the last component and the one before it */
+    unsigned far;     /* how far off the last was; 0: there is none */
+} past;
 
-    pmesh_mean *by_spread = &m->by_spread[group][spread_class(g.spread)];
-    pmesh_mean *by_far = &m->by_far[group][*far];
+/* Codes component k; false if it is out of range. */
+static bool code_component(pmesh_codec *c, pmesh_coder *coder,
+                           pmesh_outlook *o, uint32_t k, past *before)
+{
+    const pmesh_prospect *p = &o->of[k];
+    const uint32_t component = c->channel[o->channel].first + k;
+    pmesh_value_models *m = &c->value_models[component];
+    pmesh_channel_models *all = &c->channel_models[o->channel];
+    pmesh_fit *fit = &m->fit[o->group < 3 ? 0 : o->group - 2];
+    const int64_t limit = c->component_max[component];
+    const guess g =
+        predict(p, before->error, o->group == 0, limit * FRACTION, fit);
+
+    pmesh_mean *by_spread = &m->by_spread[o->group][spread_class(p->spread)];
+    pmesh_mean *by_far = &m->by_far[o->group][before->far];
     const int64_t expected =
         by_spread->uses < FEW_USES
             ? by_far->value
@@ -240,35 +249,56 @@ static bool code_component(pmesh_codec *c, pmesh_coder *coder, subject *s,
         pmesh_deviation_scale((uint64_t)expected, PMESH_VALUE_SCALES);
     const pmesh_expectation near = { &all->any[scale], &m->here[scale],
                               all->low[scale], &all->escape, scale, g.value };
-    const int64_t result = pmesh_code_near(coder, &near, *value);
-    if (result < 0 || result > c->component_max[s->channel->first + k])
+    const int64_t result = pmesh_code_near(coder, &near, o->value[k]);
+    if (result < 0 || result > limit)
         return false;
 
     const int64_t off = result * FRACTION - g.value;
     learn_mean(by_spread, size_of(off));
     learn_mean(by_far, size_of(off));
-    if (s->around->count)
+    if (o->group > 0)
         learn_fit(fit, &g, result * FRACTION, expected);
-    s->error[1] = s->error[0];
-    s->error[0] = off;
-    *far = 1 + pmesh_how_far(off, scale);
-    *value = (int32_t)result;
+    before->error[1] = before->error[0];
+    before->error[0] = off;
+    before->far = 1 + pmesh_how_far(off, scale);
+    o->value[k] = (int32_t)result;
     return true;
+}
+
+bool pmesh_outlook_code(pmesh_codec *c, pmesh_coder *coder, pmesh_outlook *o)
+{
+    past before = { .far = 0 };
+    for (uint32_t k = 0; k < c->channel[o->channel].count; k++)
+        if (!code_component(c, coder, o, k, &before))
+            return false;
+    return true;
+}
+
+static void look_out(const subject *s, pmesh_outlook *o)
+{
+    o->channel = (uint32_t)(s->channel - s->c->channel);
+    o->group = count_class(s->around->count);
+    for (uint32_t k = 0; k < s->channel->count; k++)
+        o->of[k] = s->around->count
+                       ? prospect(s, k)
+                       : (pmesh_prospect){ .mean = blind_guess(s, k) };
 }
 
 static pmesh_status code_attribute(pmesh_codec *c, pmesh_coder *coder,
                                    subject *s, const uint16_t *truth,
                                    uint16_t *out)
 {
-    int32_t value[PMESH_MAX_COMPONENTS] = { 0 };
-    unsigned far = 0;
+    pmesh_outlook o;
+    int32_t *value = o.value;
     look_around(s);
-    s->error[0] = s->error[1] = 0;
+    look_out(s, &o);
+    memset(value, 0, sizeof o.value);
     if (truth)
         look_at(s, truth, value);
-    for (uint32_t k = 0; k < s->channel->count; k++)
-        if (!code_component(c, coder, s, k, &value[k], &far))
-            return out_of_range(c);
+    if (coder->relay)
+        coder->relay->values(coder->relay->user, &o);
+    else if (!pmesh_outlook_code(c, coder, &o))
+        return out_of_range(c);
     if (s->mirrored) {
         if (value[0] > 2 * s->centre || value[1] > 2 * s->centre)
             return out_of_range(c);
@@ -291,7 +321,7 @@ static bool copy_sibling(pmesh_codec *c, pmesh_coder *coder, const subject *s,
     for (int i = 0; i < PMESH_SIBLINGS && other != PMESH_NONE; i++) {
         const uint16_t *from = stored(s, other);
         const bool differs = truth && memcmp(truth, from, size) != 0;
-        if (!pmesh_code_bit(coder, &m->differs[before][i], differs)) {
+        if (!pmesh_tell_bit(coder, &m->differs[before][i], differs)) {
             memcpy(out, from, size);
             return true;
         }
@@ -300,15 +330,22 @@ static bool copy_sibling(pmesh_codec *c, pmesh_coder *coder, const subject *s,
     return false;
 }
 
+void pmesh_values_spent(pmesh_codec *c, const pmesh_coder *coder,
+                        uint32_t attribute, uint64_t *before)
+{
+    const uint64_t now = pmesh_coder_spent(coder);
+    c->attribute_spent[attribute] += now - *before;
+    *before = now;
+}
+
 /* What was spent since the last call counts as the given attribute's. */
 static void count_spent(pmesh_codec *c, const pmesh_coder *coder, uint32_t i,
                         uint64_t *before)
 {
-    if (!coder->encoding)
-        return;
-    const uint64_t now = pmesh_coder_spent(coder);
-    c->attribute_spent[i] += now - *before;
-    *before = now;
+    if (coder->relay)
+        coder->relay->spent(coder->relay->user, i);
+    else if (coder->encoding)
+        pmesh_values_spent(c, coder, i, before);
 }
 
 pmesh_status pmesh_wedge_values_code(pmesh_codec *c, pmesh_coder *coder,
@@ -316,7 +353,8 @@ pmesh_status pmesh_wedge_values_code(pmesh_codec *c, pmesh_coder *coder,
 {
     const uint16_t *truth = oracle ? oracle->values(oracle->user, w) : NULL;
     uint16_t *out = c->mesh.value + (size_t)w * c->mesh.value_count;
-    uint64_t spent = coder->encoding ? pmesh_coder_spent(coder) : 0;
+    uint64_t spent =
+        coder->encoding && !coder->relay ? pmesh_coder_spent(coder) : 0;
     unsigned before = 0;
     pmesh_surround around;
     subject s = { .c = c, .around = &around, .w = w,

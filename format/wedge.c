@@ -62,7 +62,7 @@ static pmesh_status pick_wedge(pmesh_codec *c, pmesh_coder *coder, corner a,
 {
     uint32_t w = c->wedge_last[c->mesh.vertex[a.half_edge]];
 
-    place = pmesh_code_number(coder, &c->models.wedge.pick, place);
+    place = pmesh_tell_number(coder, &c->models.wedge.pick, place);
     if (place >= PMESH_MAX_PLACE)
         return corrupt(c, "SPEC 6.6: a wedge's place is out of range");
     for (; place > 0 && w != PMESH_NONE; place--)
@@ -116,19 +116,19 @@ static pmesh_status code_corner(pmesh_codec *c, pmesh_coder *coder,
     if (guess != PMESH_NONE) {
         const unsigned agree =
             second == PMESH_NONE ? 0 : second == guess ? 1 : 2;
-        if (!pmesh_code_bit(coder, &models->corner[agree][context], a.wedge != guess)) {
+        if (!pmesh_tell_bit(coder, &models->corner[agree][context], a.wedge != guess)) {
             c->mesh.wedge[h] = guess;
             return PMESH_OK;
         }
         if (agree == 2 &&
-            !pmesh_code_bit(coder, &models->corner[3][context], a.wedge != second)) {
+            !pmesh_tell_bit(coder, &models->corner[3][context], a.wedge != second)) {
             c->mesh.wedge[h] = second;
             return PMESH_OK;
         }
     }
     c->mesh.wedge[h] = PMESH_NONE;
     const uint32_t place = find_place(c, a);
-    if (pmesh_code_bit(coder, &models->choice[0], place != PMESH_NONE))
+    if (pmesh_tell_bit(coder, &models->choice[0], place != PMESH_NONE))
         return pick_wedge(c, coder, a, place);
     return make_wedge(c, oracle, a, parent_like(&c->mesh, h, guess));
 }
@@ -355,10 +355,10 @@ static pmesh_status code_child(pmesh_codec *c, pmesh_coder *coder,
                     ? 2
                     : d->coarse[i] != d->coarse[i - 1];
             const uint32_t place = find_place(c, a);
-            if (!pmesh_code_bit(coder, &c->models.wedge.seam[context][seam_at(m, h, m->vertex[pmesh_next(h)])],
+            if (!pmesh_tell_bit(coder, &c->models.wedge.seam[context][seam_at(m, h, m->vertex[pmesh_next(h)])],
                                 a.wedge != before))
                 m->wedge[h] = before;
-            else if (pmesh_code_bit(coder, &c->models.wedge.choice[1],
+            else if (pmesh_tell_bit(coder, &c->models.wedge.choice[1],
                                     place != PMESH_NONE))
                 status = pick_wedge(c, coder, a, place);
             else
@@ -390,7 +390,7 @@ static pmesh_status code_wedges(pmesh_codec *c, pmesh_coder *coder,
 
     pmesh_status status = PMESH_OK;
     const bool ordinary = coder->encoding && is_ordinary(&d, oracle);
-    if (!pmesh_code_bit(coder, &c->models.wedge.ordinary[seam_class(&d)],
+    if (!pmesh_tell_bit(coder, &c->models.wedge.ordinary[seam_class(&d)],
                         !ordinary)) {
         status = make_wedge(c, oracle, ask(oracle, d.at_u[0]), PMESH_NONE);
         for (uint32_t i = 0; i < d.count && status == PMESH_OK; i++) {
@@ -435,11 +435,11 @@ pmesh_status pmesh_material_code(pmesh_codec *c, pmesh_coder *coder,
         oracle ? oracle->material(oracle->user, face) : PMESH_NONE;
     const unsigned differ = guess != second;
     uint32_t result = guess;
-    if (pmesh_code_bit(coder, &models->material[differ], truth != guess)) {
+    if (pmesh_tell_bit(coder, &models->material[differ], truth != guess)) {
         result = second;
         if (!differ ||
-            pmesh_code_bit(coder, &models->material[2], truth != second))
-            result = pmesh_code_number(coder, &models->pick, truth);
+            pmesh_tell_bit(coder, &models->material[2], truth != second))
+            result = pmesh_tell_number(coder, &models->pick, truth);
     }
     if (result >= m->material_count)
         return corrupt(c, "SPEC 6.6: no such material");

@@ -178,25 +178,37 @@ TEST(pipe_tells_everything_in_order)
 /* ---- bytes --------------------------------------------------------------- */
 
 static shape_bytes bake(const shape_mesh *shape, pmesh_encoder_config config,
-                        uint32_t threads)
+                        uint32_t threads, pmesh_encode_report *report)
 {
-    pmesh_encode_report report = { .clock = NULL };
     shape_bytes bytes;
 
     config.threads = threads;
-    CHECK(shape_bake(shape, &config, &bytes, &report) == PMESH_OK);
+    report->clock = NULL;
+    CHECK(shape_bake(shape, &config, &bytes, report) == PMESH_OK);
     return bytes;
+}
+
+static void check_parts(const pmesh_encode_report *a,
+                        const pmesh_encode_report *b)
+{
+    CHECK(a->bytes_connectivity == b->bytes_connectivity);
+    CHECK(a->bytes_positions == b->bytes_positions);
+    CHECK(a->bytes_attributes == b->bytes_attributes);
+    for (uint32_t i = 0; i < a->attribute_count; i++)
+        CHECK(a->attributes[i].bytes == b->attributes[i].bytes);
 }
 
 static void check_threads(const shape_mesh *shape,
                           const pmesh_encoder_config *config)
 {
-    const shape_bytes one = bake(shape, *config, 1);
+    pmesh_encode_report report, other;
+    const shape_bytes one = bake(shape, *config, 1, &report);
 
     for (uint32_t threads = 2; threads <= 4; threads += 2) {
-        const shape_bytes more = bake(shape, *config, threads);
+        const shape_bytes more = bake(shape, *config, threads, &other);
         CHECK(one.size == more.size &&
               memcmp(one.data, more.data, one.size) == 0);
+        check_parts(&report, &other);
         free(more.data);
     }
     free(one.data);
@@ -249,6 +261,22 @@ TEST(threads_do_not_change_a_byte_of_bounds_and_measures)
     check_all(&config);
 }
 
+/* Most faces share one vertex with others: many lone ones come with a split. */
+TEST(threads_do_not_change_a_byte_of_joined_faces)
+{
+    enum { VERTICES = 3000, FACES = 2500 };
+    pmesh_encoder_config config = pmesh_encoder_config_default();
+    shape_mesh *shape = shape_make(SHAPE_SOUP, VERTICES, 3);
+    uint32_t seed = 1;
+
+    shape->input.face_count = FACES;
+    for (int i = 0; i < 3 * VERTICES; i++)
+        shape->positions[i] += shape_random(&seed, 1000) / 1000.0;
+    config.topology = PMESH_TOPOLOGY_JOIN;
+    check_threads(shape, &config);
+    shape_free(shape);
+}
+
 /* ---- hooks --------------------------------------------------------------- */
 
 typedef struct witness {
@@ -279,15 +307,16 @@ TEST(hooks_are_called_in_the_thread_of_the_caller)
     for (int profile = PMESH_COMPACT; profile <= PMESH_QUALITY; profile++) {
         shape_mesh *shape = shape_make(SHAPE_TORUS, 80, 1);
         witness w = { .caller = pthread_self() };
+        pmesh_encode_report report;
         pmesh_encoder_config config = pmesh_encoder_config_default();
         config.profile = (pmesh_profile)profile;
         config.progress = watch_progress;
         config.progress_user = &w;
-        free(bake(shape, config, 4).data);
+        free(bake(shape, config, 4, &report).data);
         config.cost = PMESH_COST_CUSTOM;
         config.cost_hook = watch_cost;
         config.cost_user = &w;
-        free(bake(shape, config, 4).data);
+        free(bake(shape, config, 4, &report).data);
         CHECK(!w.elsewhere && w.cost > 0 && w.progress > 0);
         shape_free(shape);
     }
