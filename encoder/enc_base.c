@@ -94,8 +94,7 @@ static void base_fill(base_mesh *b, const enc_replay *r)
 static uint64_t slot_of(const base_mesh *b, uint32_t from, uint32_t to)
 {
     const uint64_t mask = b->table_size - 1;
-    uint64_t slot =
-        (((uint64_t)from << 32 | to) * 0x9e3779b97f4a7c15u >> 20) & mask;
+    uint64_t slot = pmesh_edge_hash(from, to) & mask;
     for (;; slot = (slot + 1) & mask) {
         const uint32_t h = b->table[slot];
         if (h == ENC_NONE || (b->mesh.vertex[h] == from &&

@@ -40,8 +40,7 @@ uint64_t pmesh_base_scratch(uint32_t faces)
 static uint64_t slot_of(const base *b, uint32_t from, uint32_t to)
 {
     const pmesh_mesh *m = &b->c->mesh;
-    uint64_t slot =
-        (((uint64_t)from << 32 | to) * 0x9e3779b97f4a7c15u >> 20) & b->mask;
+    uint64_t slot = pmesh_edge_hash(from, to) & b->mask;
     for (;; slot = (slot + 1) & b->mask) {
         const uint32_t h = b->table[slot];
         if (h == PMESH_NONE ||

@@ -69,6 +69,16 @@ static inline uint32_t pmesh_turn_left(const pmesh_mesh *m, uint32_t h)
     return m->twin[pmesh_prev(h)];
 }
 
+/* A hash of a half-edge by its ends, for tables of any power of two: all of its
+ * bits depend on both, or the edges of a vertex with many would lie in a few
+ * runs. */
+static inline uint64_t pmesh_edge_hash(uint32_t from, uint32_t to)
+{
+    uint64_t h = ((uint64_t)from << 32 | to) * 0x9e3779b97f4a7c15u;
+    h = (h ^ h >> 32) * 0xd6e8feb86659fd93u;
+    return h ^ h >> 32;
+}
+
 /*
  * The next corner of a vertex, fan by fan; PMESH_NONE behind the last one:
  *

@@ -261,8 +261,10 @@ static void hard_corner(hard kind, uint32_t n, uint32_t i, uint32_t k,
     }
 }
 
-/* CPU seconds that baking and decoding n such faces takes; the least of two. */
-static double time_of(hard kind, uint32_t n, double *decoding)
+/* CPU seconds that baking n such faces down to a base and decoding them takes;
+ * the least of two. */
+static double time_to(hard kind, uint32_t n, uint32_t base_faces,
+                      double *decoding)
 {
     double *xyz = malloc(9 * (size_t)n * sizeof *xyz);
     uint32_t *index = malloc(3 * (size_t)n * sizeof *index);
@@ -285,9 +287,10 @@ static double time_of(hard kind, uint32_t n, double *decoding)
     double best = 1e9;
     *decoding = 1e9;
     for (int i = 0; i < 2; i++) {
-        const pmesh_encoder_config config = pmesh_encoder_config_default();
+        pmesh_encoder_config config = pmesh_encoder_config_default();
         shape_bytes out = { 0 };
         pmesh_status status;
+        config.base_faces = base_faces;
         clock_t from = clock();
         CHECK(pmesh_encode(&in, &config, collect, &out, NULL) == PMESH_OK);
         const double bake = (double)(clock() - from) / CLOCKS_PER_SEC;
@@ -317,8 +320,8 @@ TEST(ten_times_the_faces_take_no_hundred_times_as_long)
     const uint32_t n = figures ? 20000 : 2000;
     for (int kind = 0; kind < HARD_KINDS; kind++) {
         double few_decoded, many_decoded;
-        const double few = time_of((hard)kind, n, &few_decoded);
-        const double many = time_of((hard)kind, 10 * n, &many_decoded);
+        const double few = time_to((hard)kind, n, 0, &few_decoded);
+        const double many = time_to((hard)kind, 10 * n, 0, &many_decoded);
         if (figures)
             printf("    %s of %u and %u faces: bake %.3f and %.3f s (%.1fx), "
                    "decode %.4f and %.4f s (%.1fx)\n",
@@ -327,4 +330,18 @@ TEST(ten_times_the_faces_take_no_hundred_times_as_long)
         CHECK(many < 30 * few + 0.05);
         CHECK(many_decoded < 30 * few_decoded + 0.05);
     }
+}
+
+/* Of a base mesh that is the whole mesh, half-edges are found by their ends:
+ * those of a hub, which share one, take no longer than others. */
+TEST(base_of_a_hub_takes_no_longer_than_a_plane)
+{
+    const uint32_t n = 200000;
+    double plane, hub;
+    const double plane_bake = time_to(WELDED, n, n, &plane);
+    const double hub_bake = time_to(HUB, n, n, &hub);
+    if (getenv("PMESH_FIGURES"))
+        printf("    %u faces: a plane %.3f and %.3f s, a hub %.3f and %.3f s\n",
+               n, plane_bake, plane, hub_bake, hub);
+    CHECK(hub < 3 * plane + 0.02);
 }
