@@ -27,10 +27,14 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* Any threshold above 0 may be asked for: cells far out are one. */
 static void cell_of(const near_grid *g, const double p[3], int64_t cell[3])
 {
-    for (int i = 0; i < 3; i++)
-        cell[i] = (int64_t)floor(p[i] / g->threshold);
+    const double most = 0x1p62;
+    for (int i = 0; i < 3; i++) {
+        const double at = floor(p[i] / g->threshold);
+        cell[i] = (int64_t)(!(at > -most) ? -most : at < most ? at : most);
+    }
 }
 
 static size_t slot_of(const near_grid *g, const int64_t cell[3])
@@ -88,18 +92,20 @@ static void keep(near_best *best, uint32_t v, double square)
     best->vertex[at] = v;
 }
 
+/* Vertices come in ascending order, and each looks at later ones only: those
+ * before it leave the chain, which without that would be walked n times. */
 static void look_into(const near_grid *g, uint32_t u, const int64_t cell[3],
                       near_best *best)
 {
     const double *p = g->lod->position[u];
+    uint32_t *first = &g->first[slot_of(g, cell)];
 
-    for (uint32_t v = g->first[slot_of(g, cell)]; v != ENC_NONE;
-         v = g->next[v]) {
+    while (*first != ENC_NONE && *first <= u)
+        *first = g->next[*first];
+    for (uint32_t v = *first; v != ENC_NONE; v = g->next[v]) {
         const double *q = g->lod->position[v];
         int64_t own[3];
         double square = 0;
-        if (v <= u)
-            continue;
         if (best->looks++ >= ENC_LOD_NEAR_LOOKS)
             return;
         cell_of(g, q, own);

@@ -150,3 +150,15 @@ TEST(threshold_may_be_as_large_as_the_model)
     CHECK(l->out.face_count <= 200 && lods_is_sound(l));
     lods_free(l);
 }
+
+/* Places divided by it are beyond whole numbers. */
+TEST(threshold_may_be_as_small_as_numbers_are)
+{
+    lods *l = lods_sphere(20);
+
+    l->options.threshold = 1e-300;
+    l->options.faces = 200;
+    CHECK(lods_run(l) == PMESH_OK);
+    CHECK(l->out.joined == 0 && lods_is_sound(l));
+    lods_free(l);
+}
