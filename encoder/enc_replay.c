@@ -29,37 +29,13 @@ static bool answer_splits(void *user, uint32_t v)
     return contraction_of(user, v) != NULL;
 }
 
-/* The corner of `vertex` in a face of the import, by the fine mesh's labels. */
-static uint32_t corner_with(const enc_replay *r, uint32_t face, uint32_t vertex)
-{
-    uint32_t c = 3 * face;
-    while (enc_replay_label_at(r, c) != vertex)
-        c++;
-    return c;
-}
-
-/* Of the faces that a contraction removed, the one that runs v -> a -> u is at
- * wing a, the one that runs v -> u -> b at wing b; ENC_NONE if there is none.
- * Gives the corner of v in each. */
-static void removed_corners(const enc_replay *r, const enc_contraction *t,
-                            uint32_t at_wing[2])
-{
-    const uint32_t *faces = r->removed[t - r->schedule->contraction];
-    at_wing[0] = at_wing[1] = ENC_NONE;
-    for (int i = 0; i < 2 && faces[i] != ENC_NONE; i++) {
-        const uint32_t c = corner_with(r, faces[i], t->parent);
-        at_wing[enc_replay_label_at(r, next_corner(c)) == t->child] = c;
-    }
-}
-
 static void answer_cut(void *user, uint32_t v, const pmesh_ring *ring,
                        pmesh_cut *cut)
 {
     const enc_replay *r = user;
     const enc_contraction *t = contraction_of(r, v);
     const uint32_t n = ring->face_count;
-    uint32_t at_wing[2];
-    removed_corners(r, t, at_wing);
+    const uint32_t *at_wing = r->removed[t - r->schedule->contraction];
 
     /* The faces of the child are one run; it starts behind one of v's. */
     bool childs[PMESH_MAX_RING];
@@ -112,8 +88,7 @@ static void answer_split_done(void *user, uint32_t child, uint32_t face,
     enc_replay *r = user;
     const enc_contraction *t =
         contraction_of(r, r->codec.mesh.parent[child]);
-    uint32_t at_wing[2];
-    removed_corners(r, t, at_wing);
+    const uint32_t *at_wing = r->removed[t - r->schedule->contraction];
     r->vertex_of[child] = t->child;
     r->born[t->child] = child;
 
@@ -361,6 +336,30 @@ void enc_replay_label(enc_replay *r, uint32_t done)
     }
 }
 
+/* The corner of `vertex` in a face of the import, by the fine mesh's labels. */
+static uint32_t corner_with(const enc_replay *r, uint32_t face, uint32_t vertex)
+{
+    uint32_t c = 3 * face;
+    while (enc_replay_label_at(r, c) != vertex)
+        c++;
+    return c;
+}
+
+/* From the faces that the contraction removed to the corner of its parent in
+ * each: of the one that runs v -> a -> u, at wing a, first; then of the one that
+ * runs v -> u -> b, at wing b. All at once, for they wait for memory. */
+static void find_wings(enc_replay *r, uint32_t t)
+{
+    const enc_contraction *c = &r->schedule->contraction[t];
+    uint32_t *removed = r->removed[t];
+    uint32_t at_wing[2] = { ENC_NONE, ENC_NONE };
+    for (int i = 0; i < 2 && removed[i] != ENC_NONE; i++) {
+        const uint32_t k = corner_with(r, removed[i], c->parent);
+        at_wing[enc_replay_label_at(r, next_corner(k)) == c->child] = k;
+    }
+    memcpy(removed, at_wing, sizeof at_wing);
+}
+
 void enc_replay_begin(enc_replay *r, uint32_t batch)
 {
     const enc_schedule *s = r->schedule;
@@ -373,6 +372,8 @@ void enc_replay_begin(enc_replay *r, uint32_t batch)
         r->split_of[parent] = t;
         memcpy(r->position[parent], s->contraction[t].before,
                sizeof *r->position);
+        if (!r->mesh->joined)
+            find_wings(r, t);
     }
     pmesh_level_begin(&r->codec);
     if (!r->relay && r->splits_left >= RELAYED_SPLITS)
