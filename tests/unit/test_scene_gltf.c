@@ -47,24 +47,25 @@ static pmesh_scene *scene_with(const char *document)
 }
 
 /* Whether it is written as a .glb; if not, there is a message. */
-static bool writes_with(const char *document, scene_library *library)
+static bool writes_as_glb(pmesh_scene *scene, scene_library *library)
 {
     asset_bytes out = { 0 };
     asset notes = { 0 };
     asset_error error = { "", "" };
-    pmesh_scene *scene = scene_with(document);
     const scene_style style = { .glb = true, .library = library };
 
     const bool ok = scene_write(scene, style, &out, &notes, &error);
     CHECK(ok || error.what[0] != '\0');
-    pmesh_scene_destroy(scene);
     asset_bytes_free(&out);
     return ok;
 }
 
 static bool writes(const char *document)
 {
-    return writes_with(document, NULL);
+    pmesh_scene *scene = scene_with(document);
+    const bool ok = writes_as_glb(scene, NULL);
+    pmesh_scene_destroy(scene);
+    return ok;
 }
 
 #define ASSET "\"asset\":{\"version\":\"2.0\"}"
@@ -141,13 +142,15 @@ TEST(scene_library_has_an_image_once)
         asset_printf(&text, ",{\"emissiveTexture\":{\"index\":%d}}",
                      i % IMAGES);
     asset_put(&text, "]}", 3);
-    CHECK(writes_with((const char *)text.data, &library));
+    pmesh_scene *scene = scene_with((const char *)text.data);
+    CHECK(writes_as_glb(scene, &library));
     CHECK(library.image_count == IMAGES - 1 && library.missing);
     for (size_t i = 0; i < library.image_count; i++)
         CHECK(library.images[i].number == i + 1 &&
               library.images[i].size == 5 &&
               memcmp(library.images[i].data, "01234", 5) == 0);
     scene_library_free(&library);
+    pmesh_scene_destroy(scene); /* the images are its bytes */
     asset_bytes_free(&text);
 }
 
