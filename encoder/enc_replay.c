@@ -29,13 +29,19 @@ static bool answer_splits(void *user, uint32_t v)
     return contraction_of(user, v) != NULL;
 }
 
+/* The corner of the parent in the removed face at wing a, and at wing b. */
+static const uint32_t *wings_of(const enc_replay *r, const enc_contraction *t)
+{
+    return r->wings[t - r->schedule->contraction];
+}
+
 static void answer_cut(void *user, uint32_t v, const pmesh_ring *ring,
                        pmesh_cut *cut)
 {
     const enc_replay *r = user;
     const enc_contraction *t = contraction_of(r, v);
     const uint32_t n = ring->face_count;
-    const uint32_t *at_wing = r->removed[t - r->schedule->contraction];
+    const uint32_t *at_wing = wings_of(r, t);
 
     /* The faces of the child are one run; it starts behind one of v's. */
     bool childs[PMESH_MAX_RING];
@@ -88,7 +94,7 @@ static void answer_split_done(void *user, uint32_t child, uint32_t face,
     enc_replay *r = user;
     const enc_contraction *t =
         contraction_of(r, r->codec.mesh.parent[child]);
-    const uint32_t *at_wing = r->removed[t - r->schedule->contraction];
+    const uint32_t *at_wing = wings_of(r, t);
     r->vertex_of[child] = t->child;
     r->born[t->child] = child;
 
@@ -174,10 +180,10 @@ static bool allocate_maps(enc_replay *r)
     r->born = pmesh_alloc(a, n, 4);
     r->label = pmesh_alloc(a, n, 4);
     r->split_of = pmesh_alloc(a, n, 4);
-    r->removed = pmesh_alloc(a, r->schedule->contraction_count, 8);
+    r->wings = pmesh_alloc(a, r->schedule->contraction_count, 8);
     r->position = pmesh_alloc(a, n, sizeof *r->position);
     if (!r->corner_of || !r->vertex_of || !r->born || !r->label ||
-        !r->split_of || !r->removed || !r->position ||
+        !r->split_of || !r->wings || !r->position ||
         (m->joined && !enc_part_allocate(r)))
         return false;
     if (!m->value_count)
@@ -242,12 +248,12 @@ static void fill_maps(enc_replay *r)
     const enc_schedule *s = r->schedule;
     for (uint32_t v = 0; v < m->vertex_count; v++)
         r->born[v] = r->split_of[v] = ENC_NONE;
-    memset(r->removed, 0xff, s->contraction_count * sizeof *r->removed);
+    memset(r->wings, 0xff, s->contraction_count * sizeof *r->wings);
     if (m->joined)
         enc_part_fill(r);
     for (uint32_t f = 0; f < m->face_count && !m->joined; f++)
         if (s->face_end[f] != ENC_NONE) {
-            uint32_t *faces = r->removed[s->face_end[f]];
+            uint32_t *faces = r->wings[s->face_end[f]];
             faces[faces[0] != ENC_NONE] = f;
         }
     memcpy(r->position, s->position, m->vertex_count * sizeof *r->position);
@@ -300,7 +306,7 @@ void enc_replay_destroy(enc_replay *r)
     pmesh_release(a, r->born, n, 4);
     pmesh_release(a, r->label, n, 4);
     pmesh_release(a, r->split_of, n, 4);
-    pmesh_release(a, r->removed, r->schedule->contraction_count, 8);
+    pmesh_release(a, r->wings, r->schedule->contraction_count, 8);
     enc_part_release(r);
     pmesh_release(a, r->position, n, sizeof *r->position);
     pmesh_release(a, r->wedge_of, wedge_room(m), 4);
@@ -351,13 +357,13 @@ static uint32_t corner_with(const enc_replay *r, uint32_t face, uint32_t vertex)
 static void find_wings(enc_replay *r, uint32_t t)
 {
     const enc_contraction *c = &r->schedule->contraction[t];
-    uint32_t *removed = r->removed[t];
+    uint32_t *face = r->wings[t];
     uint32_t at_wing[2] = { ENC_NONE, ENC_NONE };
-    for (int i = 0; i < 2 && removed[i] != ENC_NONE; i++) {
-        const uint32_t k = corner_with(r, removed[i], c->parent);
+    for (int i = 0; i < 2 && face[i] != ENC_NONE; i++) {
+        const uint32_t k = corner_with(r, face[i], c->parent);
         at_wing[enc_replay_label_at(r, next_corner(k)) == c->child] = k;
     }
-    memcpy(removed, at_wing, sizeof at_wing);
+    memcpy(face, at_wing, sizeof at_wing);
 }
 
 void enc_replay_begin(enc_replay *r, uint32_t batch)

@@ -38,7 +38,7 @@ typedef struct enc_replay {
     uint32_t *wedge_label;
     uint32_t *split_of;     /* vertex -> its contraction as parent, in the
                                current batch or a coarser one */
-    uint32_t (*removed)[2]; /* contraction -> faces it removes, or ENC_NONE; from
+    uint32_t (*wings)[2];   /* contraction -> faces it removes, or ENC_NONE; from
                                its level on, the parent's corner at each wing */
     /* Of a joined mesh, instead: contraction -> its faces in the list; face ->
      * codec's, ENC_NONE if not yet there. See enc_part.c. */
