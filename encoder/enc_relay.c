@@ -42,7 +42,7 @@ typedef enum kind {
     NUMBER,
     RAW,
     CUT,
-    RESIDUAL,
+    PLACE,
     VALUES,
     SPENT,
     PART
@@ -59,10 +59,12 @@ typedef struct plain {
     } by;
 } plain;
 
-typedef struct residual {
+typedef struct place {
     kind kind;
-    pmesh_residual coded;
-} residual;
+    int32_t is[3];
+    pmesh_place_models *models;
+    pmesh_prediction expected;
+} place;
 
 typedef struct values {
     kind kind;
@@ -83,6 +85,11 @@ typedef struct cut {
     pmesh_cut cut;
     int32_t position[3];
 } cut;
+
+static void copy(int32_t to[3], const int32_t from[3])
+{
+    memcpy(to, from, 3 * sizeof *to);
+}
 
 static void tell_plain(const enc_relay *r, plain what)
 {
@@ -105,12 +112,15 @@ static void tell_raw(void *user, unsigned count, uint32_t value)
     tell_plain(user, (plain){ RAW, value, { .count = count } });
 }
 
-static void tell_residual(void *user, const pmesh_residual *coded)
+static void tell_place(void *user, pmesh_place_models *models,
+                       const pmesh_prediction *expected, const int32_t is[3])
 {
     const enc_relay *r = user;
-    residual *t = enc_pipe_room(r->pipe, sizeof *t);
-    t->kind = RESIDUAL;
-    t->coded = *coded;
+    place *t = enc_pipe_room(r->pipe, sizeof *t);
+    t->kind = PLACE;
+    t->models = models;
+    t->expected = *expected;
+    copy(t->is, is);
 }
 
 static void tell_values(void *user, const pmesh_outlook *outlook)
@@ -136,11 +146,6 @@ static void tell_part(void *user, int part)
 static bool is_newborn(const pmesh_codec *c, uint32_t v)
 {
     return c->state[v] == PMESH_NEWBORN;
-}
-
-static void copy(int32_t to[3], const int32_t from[3])
-{
-    memcpy(to, from, 3 * sizeof *to);
 }
 
 static void tell_cut(void *user, const pmesh_codec *c, uint32_t v,
@@ -192,6 +197,14 @@ static void code_cut(enc_relay *r, const cut *t)
     pmesh_cut_code(&r->around, r->coder, 0, &r->ring, &same);
 }
 
+static void code_place(enc_relay *r, const place *t)
+{
+    pmesh_prediction expected = t->expected;
+    int32_t same[3];
+    copy(same, t->is);
+    pmesh_residual_code(r->coder, t->models, r->codec->bounds, &expected, same);
+}
+
 static void code_values(enc_relay *r, const values *t)
 {
     pmesh_outlook same = t->outlook;
@@ -227,11 +240,10 @@ static void follow(void *user, uint32_t whole, unsigned worker)
     (void)worker;
     while ((told = enc_pipe_next(r->pipe))) {
         const kind *what = told;
-        const residual *p = told;
         if (*what == CUT)
             code_cut(r, told);
-        else if (*what == RESIDUAL)
-            pmesh_residual_code_again(r->coder, r->codec->bounds, &p->coded);
+        else if (*what == PLACE)
+            code_place(r, told);
         else if (*what == VALUES)
             code_values(r, told);
         else
@@ -283,9 +295,9 @@ enc_relay *enc_relay_create(const pmesh_allocator *a, enc_pool *pool,
     r->allocator = *a;
     r->pool = pool;
     r->codec = codec;
-    r->front = (pmesh_relay){ r,          tell_bit,      tell_number,
-                              tell_raw,   tell_cut,      tell_residual,
-                              tell_values, tell_spent,   tell_part };
+    r->front = (pmesh_relay){ r,           tell_bit,   tell_number,
+                              tell_raw,    tell_cut,   tell_place,
+                              tell_values, tell_spent, tell_part };
     r->pipe = enc_pipe_create(a);
     if (r->pipe && lay_around(r))
         return r;

@@ -344,7 +344,9 @@ static bool code_position(pmesh_codec *c, pmesh_coder *coder,
     int32_t position[3] = { 0, 0, 0 };
     if (oracle)
         oracle->position(oracle->user, x, position);
-    if (!pmesh_residual_code(c, coder, models, p, position))
+    if (coder->relay)
+        coder->relay->place(coder->relay->user, models, p, position);
+    else if (!pmesh_residual_code(coder, models, c->bounds, p, position))
         return false;
     pmesh_place(c, x, ring, position);
     return true;
@@ -362,7 +364,7 @@ static bool code_moved_parent(pmesh_codec *c, pmesh_coder *coder,
     for (int k = 0; k < 3; k++) /* parent and child part about evenly */
         mirrored[k] =
             clamp(2 * (int64_t)before[k] - m->position[u][k], c->bounds[k]);
-    pmesh_predict(c, &c->place[1], v, site, mirrored, u + 1, &p);
+    pmesh_predict(c, v, site, mirrored, u + 1, &p);
     return code_position(c, coder, oracle, &c->place[1], v, &site->ring, &p);
 }
 
@@ -373,7 +375,7 @@ static bool code_child(pmesh_codec *c, pmesh_coder *coder,
     const pmesh_mesh *m = &c->mesh;
     const int32_t *parent = m->position[m->parent[u]];
     pmesh_prediction p;
-    pmesh_predict(c, &c->place[0], u, site, parent, u, &p);
+    pmesh_predict(c, u, site, parent, u, &p);
     if (!code_position(c, coder, oracle, &c->place[0], u, &site->ring, &p))
         return false;
     c->importance[u - c->block.vertex] = importance_of(m, u, parent, &p);

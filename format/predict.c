@@ -198,7 +198,8 @@ static void predict_blindly(const int32_t at[3], pmesh_prediction *out)
                                .ring_class = 7,
                                .unknown = 2,
                                .irregular = PMESH_IRREGULAR - 1,
-                               .rough = PMESH_ROUGH - 1 };
+                               .rough = PMESH_ROUGH - 1,
+                               .blind = true };
     for (int k = 0; k < 3; k++)
         out->position[k] = (int64_t)at[k] * (1 << FRACTION_BITS);
 }
@@ -232,6 +233,7 @@ static void classify(const pmesh_star *s, const pmesh_ring *ring, const walk *w,
     const int64_t size = pmesh_scale(s->size, FRACTION_BITS - s->shift);
     p->size = size < 16 ? 16 : (uint32_t)size;
     p->shift = s->shift;
+    p->blind = false;
     for (int k = 0; k < 3; k++) {
         p->normal[k] = s->normal[k];
         p->mean[k] = s->mean[k];
@@ -256,11 +258,14 @@ static void add_up(const int32_t weight[LANES], int16_t term[3][LANES],
     }
 }
 
-/* The mean and the weighted terms, within the bounds, as every vertex is. */
-static void add_terms(pmesh_prediction *p, const int32_t bounds[3])
+void pmesh_predict_weigh(const pmesh_place_models *models,
+                         const int32_t bounds[3], pmesh_prediction *p)
 {
-    const int32_t *along = p->fit[0].weight, *across = p->fit[1].weight;
+    const pmesh_fit *fit = models->predict[p->ring_class][p->unknown];
+    const int32_t *along = fit[0].weight, *across = fit[1].weight;
     int64_t sum[3], height = 0;
+    if (p->blind)
+        return;
     add_up(along, p->term, sum);
     for (int t = 0; t < PMESH_FIT_TERMS; t++)
         height += (int64_t)(across[t] - along[t]) * p->height[t];
@@ -277,9 +282,9 @@ static void add_terms(pmesh_prediction *p, const int32_t bounds[3])
     }
 }
 
-void pmesh_predict(pmesh_codec *c, pmesh_place_models *models, uint32_t x,
-                   const pmesh_site *site, const int32_t partner_position[3],
-                   uint32_t provisional, pmesh_prediction *out)
+void pmesh_predict(const pmesh_codec *c, uint32_t x, const pmesh_site *site,
+                   const int32_t partner_position[3], uint32_t provisional,
+                   pmesh_prediction *out)
 {
     pmesh_star s;
     walk w;
@@ -294,8 +299,6 @@ void pmesh_predict(pmesh_codec *c, pmesh_place_models *models, uint32_t x,
     walk_ring(c, &s, &by, ring, x, out->base, provisional, &w);
     make_terms(c, &s, site, &by, &w, out);
     classify(&s, ring, &w, out);
-    out->fit = models->predict[out->ring_class][out->unknown];
-    add_terms(out, c->bounds);
 }
 
 /* ---- learning ----------------------------------------------------------- */
@@ -370,8 +373,7 @@ static factors make_factors(const pmesh_prediction *p)
     return f;
 }
 
-static void learn_along(const pmesh_prediction *p, const factors *f,
-                        int32_t weight)
+static void learn_along(pmesh_fit *fit, const factors *f, int32_t weight)
 {
     pmesh_sample s;
     int16_t x[LANES], y[LANES], z[LANES];
@@ -388,11 +390,10 @@ static void learn_along(const pmesh_prediction *p, const factors *f,
                     quads_add(quads_last(f->along[0], f->along[1], a, b),
                               quads_last(f->along[2], none, d, none)));
     }
-    pmesh_fit_learn(&p->fit[0], &s, weight, PULL_ALONG);
+    pmesh_fit_learn(fit, &s, weight, PULL_ALONG);
 }
 
-static void learn_across(const pmesh_prediction *p, const factors *f,
-                         int32_t weight)
+static void learn_across(pmesh_fit *fit, const factors *f, int32_t weight)
 {
     pmesh_sample s;
     int16_t height[LANES];
@@ -403,14 +404,16 @@ static void learn_across(const pmesh_prediction *p, const factors *f,
         quads_store(s.product[i], quads_first(f->across, none, h, none));
         quads_store(s.product[i] + QUADS, quads_last(f->across, none, h, none));
     }
-    pmesh_fit_learn(&p->fit[1], &s, weight, PULL_ACROSS);
+    pmesh_fit_learn(fit, &s, weight, PULL_ACROSS);
 }
 
-void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3],
-                         uint32_t along, uint32_t across)
+void pmesh_predict_learn(pmesh_place_models *models, pmesh_prediction *p,
+                         const int32_t position[3], uint32_t along,
+                         uint32_t across)
 {
+    pmesh_fit *fit = models->predict[p->ring_class][p->unknown];
     int64_t up = 0, error_up = 0, error = 0;
-    if (!p->fit)
+    if (p->blind)
         return;
     for (int k = 0; k < 3; k++) {
         const int64_t to =
@@ -428,10 +431,10 @@ void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3],
     const int64_t square_flat =
         limited((error >> 2 * FIT_DROP) - square_up, INT32_MAX);
     const factors f = make_factors(p);
-    learn_along(p, &f,
+    learn_along(&fit[0], &f,
                 sample_weight(expected_square(p, along) +
                               (square_flat > 0 ? square_flat : 0)));
-    learn_across(p, &f,
+    learn_across(&fit[1], &f,
                  sample_weight(expected_square(p, across) / 2 + square_up));
 }
 

@@ -23,8 +23,9 @@ typedef struct pmesh_prediction {
     uint8_t irregular; /* neighbours with other than 6 neighbours, at most 4 */
     uint8_t rough;     /* how far the ring is from plane, log classes */
 
-    /* What learning needs; in the coordinates of the star (star.h). */
-    pmesh_fit *fit; /* along, across; NULL if the ring was too large */
+    bool blind; /* the ring was too large: there is nothing to weigh or learn */
+
+    /* What is weighed and learnt; in the coordinates of the star (star.h). */
     int shift;
     int32_t base[3];
     int32_t mean[3], corrected[3];
@@ -36,18 +37,24 @@ typedef struct pmesh_prediction {
 void pmesh_guess(const pmesh_codec *c, uint32_t x, const pmesh_ring *ring,
                  int32_t position[3]);
 
-/* The position of x at its site, where the ring may be too large. Of its partner,
- * the other vertex of its split, this position is known; members of the ring
- * from `provisional` on (by number) have no final position yet; no partner is.
- */
-void pmesh_predict(pmesh_codec *c, pmesh_place_models *models, uint32_t x,
-                   const pmesh_site *site, const int32_t partner_position[3],
-                   uint32_t provisional, pmesh_prediction *out);
+/* What the site of x tells of its position; the ring may be too large. Of its
+ * partner, the other vertex of its split, this position is known; members of the
+ * ring from `provisional` on (by number) have no final position yet; no partner
+ * is. Models are not looked at: the position itself is left to
+ * pmesh_predict_weigh(). */
+void pmesh_predict(const pmesh_codec *c, uint32_t x, const pmesh_site *site,
+                   const int32_t partner_position[3], uint32_t provisional,
+                   pmesh_prediction *out);
+
+/* Sums the terms up by their weights so far: the position, within the bounds. */
+void pmesh_predict_weigh(const pmesh_place_models *models,
+                         const int32_t bounds[3], pmesh_prediction *p);
 
 /* The position turned out to be this, where errors of `along` and `across`
  * (1/16 steps) were expected. */
-void pmesh_predict_learn(pmesh_prediction *p, const int32_t position[3],
-                         uint32_t along, uint32_t across);
+void pmesh_predict_learn(pmesh_place_models *models, pmesh_prediction *p,
+                         const int32_t position[3], uint32_t along,
+                         uint32_t across);
 
 /* Moves x, whose ring is given (no members: too large), to a position and
  * corrects its neighbours' sums. */

@@ -14,8 +14,9 @@
 #include "format/mesh.h"
 
 struct pmesh_codec;
-struct pmesh_residual; /* see residual.h */
-struct pmesh_outlook;  /* see value.h */
+struct pmesh_place_models; /* see models.h */
+struct pmesh_prediction;   /* see predict.h */
+struct pmesh_outlook;      /* see value.h */
 
 typedef struct pmesh_relay {
     void *user;
@@ -24,7 +25,9 @@ typedef struct pmesh_relay {
     void (*raw)(void *user, unsigned count, uint32_t value);
     void (*cut)(void *user, const struct pmesh_codec *c, uint32_t v,
                 const pmesh_ring *ring, const pmesh_cut *cut);
-    void (*residual)(void *user, const struct pmesh_residual *residual);
+    void (*place)(void *user, struct pmesh_place_models *models,
+                  const struct pmesh_prediction *expected,
+                  const int32_t position[3]);
     void (*values)(void *user, const struct pmesh_outlook *outlook);
     void (*spent)(void *user, uint32_t attribute); /* on that, so far */
     void (*part)(void *user, int part); /* ends here: see part_size */

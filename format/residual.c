@@ -241,31 +241,8 @@ static inline bool code_axes(pmesh_coder *coder, pmesh_residual_model *m,
     return true;
 }
 
-void pmesh_residual_code_again(pmesh_coder *coder, const int32_t bounds[3],
-                               const pmesh_residual *r)
-{
-    int32_t position[3] = { r->position[0], r->position[1], r->position[2] };
-    int axis[3];
-    axis_order(r->normal, axis);
-    code_axes(coder, r->model, bounds, r->expected, axis,
-              gauss_make(r->normal, axis, r->along, r->across), position);
-}
-
-static void relay(pmesh_coder *coder, pmesh_residual_model *m,
-                  const pmesh_prediction *p, uint32_t along, uint32_t across,
-                  const int32_t position[3])
-{
-    pmesh_residual r = { .model = m, .along = along, .across = across };
-    for (int k = 0; k < 3; k++) {
-        r.expected[k] = p->position[k];
-        r.normal[k] = p->normal[k];
-        r.position[k] = position[k];
-    }
-    coder->relay->residual(coder->relay->user, &r);
-}
-
-bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder,
-                         pmesh_place_models *m, pmesh_prediction *p,
+bool pmesh_residual_code(pmesh_coder *coder, pmesh_place_models *m,
+                         const int32_t bounds[3], pmesh_prediction *p,
                          int32_t position[3])
 {
     pmesh_mean *along = &m->along[p->ring_class][p->unknown][p->irregular];
@@ -275,16 +252,14 @@ bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder,
     int axis[3];
     int64_t d[3];
 
+    pmesh_predict_weigh(m, bounds, p);
     axis_order(p->normal, axis);
     const gauss g = gauss_make(p->normal, axis, wide, high);
-    if (coder->relay)
-        relay(coder, &m->residual, p, wide, high, position);
-    else if (!code_axes(coder, &m->residual, c->bounds, p->position, axis, g,
-                        position))
+    if (!code_axes(coder, &m->residual, bounds, p->position, axis, g, position))
         return false;
     for (int k = 0; k < 3; k++)
         d[k] = (int64_t)position[axis[k]] * FRACTION - p->position[axis[k]];
     learn_errors(&g, d, along, across, p->size);
-    pmesh_predict_learn(p, position, wide, high);
+    pmesh_predict_learn(m, p, position, wide, high);
     return true;
 }

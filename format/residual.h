@@ -34,22 +34,11 @@ unsigned pmesh_deviation_scale(uint64_t deviation, unsigned count);
  * PMESH_FAR. */
 unsigned pmesh_how_far(int64_t off, unsigned scale);
 
-/* Codes `position` (in and out) and learns from the outcome. Decoding: false if
+/* Codes `position` (in and out) by what its site tells and learns from the
+ * outcome: nothing but stream and models is needed or changed. Decoding: false if
  * it leaves the bounds. */
-bool pmesh_residual_code(pmesh_codec *c, pmesh_coder *coder,
-                         pmesh_place_models *m, pmesh_prediction *p,
+bool pmesh_residual_code(pmesh_coder *coder, pmesh_place_models *m,
+                         const int32_t bounds[3], pmesh_prediction *p,
                          int32_t position[3]);
-
-/* The part of it that nothing but the stream and the model depends on. */
-typedef struct pmesh_residual {
-    pmesh_residual_model *model;
-    int64_t expected[3]; /* 1/16 steps */
-    int32_t normal[3], position[3];
-    uint32_t along, across; /* expected sizes */
-} pmesh_residual;
-
-/* Encoding: what a relay was given. */
-void pmesh_residual_code_again(pmesh_coder *coder, const int32_t bounds[3],
-                               const pmesh_residual *residual);
 
 #endif
