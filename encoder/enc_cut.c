@@ -42,6 +42,30 @@ static uint32_t fan_begin(const cutter *cut, uint32_t x)
     return begin;
 }
 
+static void number_corner(cutter *cut, uint32_t x, uint32_t id)
+{
+    enc_bit_put(cut->visited, x);
+    cut->mesh->vertex[x] = id;
+}
+
+/* All corners of the fan of x: to the left, and if that ends, to the right. */
+static void number_fan(cutter *cut, uint32_t x, uint32_t id)
+{
+    const uint32_t *twin = cut->mesh->twin;
+    uint32_t y = x;
+
+    do {
+        number_corner(cut, y, id);
+        y = left_neighbour(cut, y);
+    } while (y != ENC_NONE && y != x);
+    if (y == x)
+        return;
+    for (y = twin[x]; y != ENC_NONE; y = twin[y]) {
+        y = enc_next_corner(y);
+        number_corner(cut, y, id);
+    }
+}
+
 /* The first fan of a vertex, in the order of its first corner, keeps the
  * number; every other one gets the next free number. */
 static void split_fans(cutter *cut)
@@ -59,13 +83,7 @@ static void split_fans(cutter *cut)
         if (enc_bit_get(cut->taken, id))
             id = mesh->vertex_count++;
         enc_bit_put(cut->taken, id);
-        const uint32_t begin = fan_begin(cut, c);
-        uint32_t x = begin;
-        do {
-            enc_bit_put(cut->visited, x);
-            mesh->vertex[x] = id;
-            x = left_neighbour(cut, x);
-        } while (x != ENC_NONE && x != begin);
+        number_fan(cut, c, id);
     }
 }
 
