@@ -15,17 +15,39 @@ static uint32_t next_corner(uint32_t c)
 
 /* ---- the oracle -------------------------------------------------------- */
 
+static bool in_batch(const enc_replay *r, uint32_t t)
+{
+    const uint32_t *first = r->schedule->batch_first + r->batch;
+    return t != ENC_NONE && t >= first[0] && t < first[1];
+}
+
 static const enc_contraction *contraction_of(const enc_replay *r, uint32_t v)
 {
     const uint32_t t = r->split_of[r->vertex_of[v]];
-    const uint32_t *first = r->schedule->batch_first + r->batch;
-    return t != ENC_NONE && t >= first[0] && t < first[1]
-               ? &r->schedule->contraction[t]
-               : NULL;
+    return in_batch(r, t) ? &r->schedule->contraction[t] : NULL;
+}
+
+/* Numbers of the codec and of the import have nothing to do with each other:
+ * asks for what the answers about vertices that the visit comes to need. */
+static void prefetch_answers(const enc_replay *r)
+{
+    enum { SPLIT = 4, OF = 8, VERTEX = 12 }; /* so many visits ahead */
+    const pmesh_codec *c = &r->codec;
+    const uint32_t *coming = c->order + c->level_next;
+    if (c->level_queued - c->level_next <= VERTEX)
+        return;
+    pmesh_prefetch(&r->vertex_of[coming[VERTEX]]);
+    pmesh_prefetch(&r->split_of[r->vertex_of[coming[OF]]]);
+    const uint32_t t = r->split_of[r->vertex_of[coming[SPLIT]]];
+    if (!in_batch(r, t))
+        return;
+    pmesh_prefetch(&r->schedule->contraction[t]);
+    pmesh_prefetch(&r->wings[t]);
 }
 
 static bool answer_splits(void *user, uint32_t v)
 {
+    prefetch_answers(user);
     return contraction_of(user, v) != NULL;
 }
 
@@ -112,7 +134,10 @@ static void answer_split_done(void *user, uint32_t child, uint32_t face,
 
 static void answer_position(void *user, uint32_t v, int32_t out[3])
 {
+    enum { AHEAD = 8 }; /* they are asked for in order */
     const enc_replay *r = user;
+    if (v + AHEAD < r->codec.mesh.vertex_count)
+        pmesh_prefetch(&r->position[r->vertex_of[v + AHEAD]]);
     memcpy(out, r->position[r->vertex_of[v]], sizeof *r->position);
 }
 
