@@ -541,11 +541,12 @@ static pmesh_status run(const pmesh_mesh_input *in,
 {
     enc_mesh mesh;
     const double start = report->clock ? report->clock() : 0;
-    pmesh_status status = enc_mesh_import(in, config, &mesh, report);
+    pmesh_status status = enc_mesh_import(in, config, pool, &mesh, report);
     if (status != PMESH_OK)
         return status;
     const bool rivals = wants_rivals(config, pool);
-    mesh.pool = rivals ? NULL : pool;
+    if (rivals)
+        mesh.pool = NULL;
     report->seconds_import = (report->clock ? report->clock() : 0) - start;
 
     job *j = draft_best(&mesh, in, config, rivals ? pool : NULL, report,

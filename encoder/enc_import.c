@@ -378,14 +378,16 @@ static pmesh_status run_import(enc_importer *im)
 
 pmesh_status enc_mesh_import(const pmesh_mesh_input *in,
                              const pmesh_encoder_config *config,
-                             enc_mesh *out, pmesh_encode_report *report)
+                             enc_pool *pool, enc_mesh *out,
+                             pmesh_encode_report *report)
 {
     enc_importer im = { .in = in, .config = config, .mesh = out,
                     .report = report };
 
     *out = (enc_mesh){
         .allocator = pmesh_allocator_resolve(config->allocator),
-        .material_count = in->material_count ? in->material_count : 1
+        .material_count = in->material_count ? in->material_count : 1,
+        .pool = pool
     };
     begin_report(&im);
     const pmesh_status status = run_import(&im);

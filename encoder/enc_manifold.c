@@ -79,26 +79,47 @@ static uint32_t find_piece(uint32_t *piece, uint32_t v)
     return v;
 }
 
+/* Vertices and faces of which the pieces are counted. */
+typedef struct piece_count {
+    const uint32_t *vertex; /* per corner */
+    uint32_t corners, vertices;
+    uint32_t *piece; /* scratch, per vertex */
+    uint32_t count;
+} piece_count;
+
+static void count_pieces(void *user, uint32_t whole, unsigned worker)
+{
+    piece_count *p = user;
+    uint32_t *piece = p->piece;
+
+    (void)whole;
+    (void)worker;
+    for (uint32_t v = 0; v < p->vertices; v++)
+        piece[v] = v;
+    p->count = p->vertices;
+    for (uint32_t c = 0; c < p->corners; c++) {
+        const uint32_t v = find_piece(piece, p->vertex[c]);
+        const uint32_t w = find_piece(piece, p->vertex[enc_next_corner(c)]);
+        if (v == w)
+            continue;
+        piece[v > w ? v : w] = v > w ? w : v;
+        p->count--;
+    }
+}
+
 pmesh_status enc_count_pieces(const pmesh_allocator *a, const uint32_t *vertex,
                               uint32_t corners, uint32_t vertices,
                               uint32_t *count)
 {
-    uint32_t *piece = pmesh_alloc(a, vertices, sizeof *piece);
+    piece_count p = { .vertex = vertex, .corners = corners,
+                      .vertices = vertices };
 
-    if (!piece)
+    p.piece = pmesh_alloc(a, vertices, sizeof *p.piece);
+    if (!p.piece)
         return PMESH_E_MEMORY;
-    for (uint32_t v = 0; v < vertices; v++)
-        piece[v] = v;
-    *count = vertices;
-    for (uint32_t c = 0; c < corners; c++) {
-        const uint32_t v = find_piece(piece, vertex[c]);
-        const uint32_t w = find_piece(piece, vertex[enc_next_corner(c)]);
-        if (v == w)
-            continue;
-        piece[v > w ? v : w] = v > w ? w : v;
-        --*count;
-    }
-    pmesh_release(a, piece, vertices, sizeof *piece);
+    count_pieces(&p, 0, 0);
+    pmesh_release(a, p.piece, vertices, sizeof *p.piece);
+    *count = p.count;
     return PMESH_OK;
 }
 
@@ -196,6 +217,7 @@ static pmesh_status join_fans(enc_importer *im, const uint32_t *before,
     return ready ? PMESH_OK : PMESH_E_MEMORY;
 }
 
+/* Pieces are those before the cutting, and counted beside it. */
 static pmesh_status cut_fans(enc_importer *im, bool regular)
 {
     enc_mesh *mesh = im->mesh;
@@ -203,13 +225,21 @@ static pmesh_status cut_fans(enc_importer *im, bool regular)
     const size_t corners = 3 * (size_t)mesh->face_count;
     const uint32_t old_count = mesh->vertex_count;
     uint32_t *before = pmesh_alloc(a, corners, sizeof *before);
+    piece_count pieces = { .vertex = before, .corners = (uint32_t)corners,
+                           .vertices = old_count };
+    pmesh_status status = PMESH_E_MEMORY;
 
-    if (!before)
-        return PMESH_E_MEMORY;
-    memcpy(before, mesh->vertex, corners * sizeof *before);
-    pmesh_status status = enc_cut(mesh, regular);
+    pieces.piece = pmesh_alloc(a, old_count, sizeof *pieces.piece);
+    if (before && pieces.piece) {
+        memcpy(before, mesh->vertex, corners * sizeof *before);
+        enc_pool_begin(mesh->pool, 1, count_pieces, &pieces);
+        status = enc_cut(mesh, regular);
+        enc_pool_end(mesh->pool);
+        im->report->components = pieces.count;
+    }
     if (!status && wants_join(im, old_count))
         status = join_fans(im, before, old_count);
+    pmesh_release(a, pieces.piece, old_count, sizeof *pieces.piece);
     pmesh_release(a, before, corners, sizeof *before);
     return status;
 }
@@ -220,10 +250,6 @@ pmesh_status enc_make_manifold(enc_importer *im)
     bool regular = true;
 
     pmesh_status status = pair_faces(im, &regular);
-    if (!status) /* before the cutting */
-        status = enc_count_pieces(&im->mesh->allocator, im->mesh->vertex,
-                                  3 * im->mesh->face_count, old_count,
-                                  &im->report->components);
     if (!status)
         status = cut_fans(im, regular);
     if (!status)

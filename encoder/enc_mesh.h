@@ -81,11 +81,14 @@ typedef struct enc_mesh {
  *   faces = input_faces - not_finite - degenerate - duplicate,
  *   vertices = input_vertices - unused - welded + cut.
  *
+ * pool: who helps, and becomes the mesh'; or NULL.
+ *
  * Returns PMESH_OK or a status of pmesh_encode() with *out empty.
  */
 pmesh_status enc_mesh_import(const pmesh_mesh_input *in,
                              const pmesh_encoder_config *config,
-                             enc_mesh *out, pmesh_encode_report *report);
+                             enc_pool *pool, enc_mesh *out,
+                             pmesh_encode_report *report);
 
 void enc_mesh_destroy(enc_mesh *mesh);
 

@@ -24,6 +24,10 @@ typedef struct pairer {
     uint64_t *other_key; /* of some of its half-edges */
 } pairer;
 
+/* Of several threads each takes so many vertices at a time; where a bucket is
+ * larger than that, one thread takes all. */
+enum { BLOCK = 2048, LARGEST_SHARED = 4096 };
+
 static uint32_t tail_of(const pairer *pair, uint32_t h)
 {
     return pair->mesh->vertex[h];
@@ -152,7 +156,8 @@ static void drop_repeated(pairer *pair, uint64_t *key, size_t count)
     for (size_t i = 1; i < count; i++) {
         if (key_vertex(key[i]) != key_vertex(key[i - 1]))
             continue;
-        enc_bit_put(pair->result->repeated, key_half_edge(key[i]) / 3);
+        if (pair->result->repeated)
+            enc_bit_put(pair->result->repeated, key_half_edge(key[i]) / 3);
         pair->result->repeated_count++;
     }
 }
@@ -306,7 +311,8 @@ static void pair_edge(pairer *pair, const uint64_t *key, size_t count)
     for (size_t i = 0; i < count; i++) {
         const uint32_t h = key_half_edge(key[i]);
         const bool down = key_runs_down(key[i]);
-        if (enc_bit_get(pair->result->repeated, h / 3))
+        if (pair->result->repeated &&
+            enc_bit_get(pair->result->repeated, h / 3))
             continue;
         if ((down ? fan.down_count : fan.up_count) == MAX_FAN) {
             pair->result->regular = false;
@@ -354,6 +360,88 @@ static void pair_bucket(pairer *pair, uint32_t v)
     }
 }
 
+/* ---- all ------------------------------------------------------------------ */
+
+static void pair_serially(pairer *pair)
+{
+    for (uint32_t v = 0; v < pair->mesh->vertex_count; v++)
+        pair_bucket(pair, v);
+}
+
+/* Shared among threads: their keys lie one behind the other. */
+typedef struct sharing {
+    const pairer *all;
+    enc_pairing *found; /* per block; repeated faces are counted only */
+} sharing;
+
+static void pair_block(void *user, uint32_t part, unsigned worker)
+{
+    const sharing *s = user;
+    const uint32_t first = part * BLOCK, all = s->all->mesh->vertex_count;
+    const uint32_t end = all - first < BLOCK ? all : first + BLOCK;
+    pairer mine = *s->all;
+
+    mine.key += 2 * worker * mine.largest;
+    mine.other_key = mine.key + mine.largest;
+    mine.result = &s->found[part];
+    *mine.result = (enc_pairing){ .regular = true };
+    for (uint32_t v = first; v < end; v++)
+        pair_bucket(&mine, v);
+}
+
+static void forget_twins(const pairer *pair)
+{
+    memset(pair->mesh->twin, 0xff,
+           pair->corner_count * sizeof *pair->mesh->twin);
+}
+
+/* An edge is in one bucket, so buckets do not depend on each other, unless by
+ * faces that are repeated: then, which is rare, all goes by one thread. False,
+ * with nothing done, if memory is out. */
+static bool pair_shared(pairer *pair)
+{
+    const uint32_t blocks = (pair->mesh->vertex_count + BLOCK - 1) / BLOCK;
+    const pmesh_allocator *a = &pair->mesh->allocator;
+    sharing s = { .all = pair };
+    uint32_t repeated = 0;
+
+    s.found = pmesh_alloc(a, blocks, sizeof *s.found);
+    if (!s.found)
+        return false;
+    enc_pool_run(pair->mesh->pool, blocks, pair_block, &s);
+    for (uint32_t i = 0; i < blocks; i++) {
+        repeated += s.found[i].repeated_count;
+        pair->result->regular &= s.found[i].regular;
+    }
+    pmesh_release(a, s.found, blocks, sizeof *s.found);
+    if (repeated == 0)
+        return true;
+    pair->result->regular = true;
+    forget_twins(pair);
+    pair_serially(pair);
+    return true;
+}
+
+/* The half-edges are in their buckets. */
+static bool pair_buckets(pairer *pair)
+{
+    const pmesh_allocator *a = &pair->mesh->allocator;
+    const bool shared = pair->mesh->pool && pair->largest <= LARGEST_SHARED;
+    const size_t workers = shared ? enc_pool_workers(pair->mesh->pool) : 1;
+    const size_t keys = 2 * workers * pair->largest;
+    bool good;
+
+    pair->key = pmesh_alloc(a, keys, sizeof *pair->key);
+    if (!pair->key)
+        return false;
+    pair->other_key = pair->key + pair->largest;
+    good = !shared || pair_shared(pair);
+    if (!shared)
+        pair_serially(pair);
+    pmesh_release(a, pair->key, keys, sizeof *pair->key);
+    return good;
+}
+
 pmesh_status enc_pair(enc_mesh *mesh, enc_pairing *pairing)
 {
     const pmesh_allocator *a = &mesh->allocator;
@@ -361,30 +449,22 @@ pmesh_status enc_pair(enc_mesh *mesh, enc_pairing *pairing)
     const size_t corners = 3 * (size_t)mesh->face_count;
     pairer pair = { .mesh = mesh, .result = pairing,
                     .corner_count = (uint32_t)corners };
-    pmesh_status status = PMESH_E_MEMORY;
+    bool good;
 
     pairing->repeated_count = 0;
     pairing->regular = true;
     mesh->twin = pmesh_alloc(a, corners, sizeof *mesh->twin);
     if (!mesh->twin)
         return PMESH_E_MEMORY;
-    memset(mesh->twin, 0xff, corners * sizeof *mesh->twin);
+    forget_twins(&pair);
     pair.first = pmesh_alloc(a, starts, sizeof *pair.first);
     pair.half_edge = pmesh_alloc(a, corners, sizeof *pair.half_edge);
-    if (!pair.first || !pair.half_edge)
-        goto done;
-    fill_buckets(&pair);
-    pair.key = pmesh_alloc(a, pair.largest, sizeof *pair.key);
-    pair.other_key = pmesh_alloc(a, pair.largest, sizeof *pair.other_key);
-    if (!pair.key || !pair.other_key)
-        goto done;
-    for (uint32_t v = 0; v < mesh->vertex_count; v++)
-        pair_bucket(&pair, v);
-    status = PMESH_OK;
-done:
-    pmesh_release(a, pair.other_key, pair.largest, sizeof *pair.other_key);
-    pmesh_release(a, pair.key, pair.largest, sizeof *pair.key);
+    good = pair.first && pair.half_edge;
+    if (good) {
+        fill_buckets(&pair);
+        good = pair_buckets(&pair);
+    }
     pmesh_release(a, pair.half_edge, corners, sizeof *pair.half_edge);
     pmesh_release(a, pair.first, starts, sizeof *pair.first);
-    return status;
+    return good ? PMESH_OK : PMESH_E_MEMORY;
 }

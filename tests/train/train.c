@@ -182,7 +182,7 @@ static pmesh_status run(const pmesh_mesh_input *in,
     enc_mesh mesh;
     enc_schedule schedule;
     enc_replay replay;
-    pmesh_status status = enc_mesh_import(in, config, &mesh, &report);
+    pmesh_status status = enc_mesh_import(in, config, NULL, &mesh, &report);
     if (status != PMESH_OK)
         return status;
     status = enc_schedule_build(&mesh, config, 0, &schedule);

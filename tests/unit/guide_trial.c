@@ -36,7 +36,8 @@ void guide_run(guide_trial *t)
     pmesh_encode_report report = { 0 };
 
     guide_forget(t);
-    CHECK(enc_mesh_import(&t->shape->input, &t->config, &t->mesh, &report) ==
+    CHECK(enc_mesh_import(&t->shape->input, &t->config, NULL, &t->mesh,
+                          &report) ==
           PMESH_OK);
     CHECK(enc_schedule_build(&t->mesh, &t->config, 0, &t->schedule) ==
           PMESH_OK);

@@ -44,7 +44,7 @@ pmesh_status import_run(trial *t)
     t->config.allocator =
         (pmesh_allocator){ import_alloc, import_release, &t->acc };
     const pmesh_status status =
-        enc_mesh_import(&t->in, &t->config, &t->mesh, &t->report);
+        enc_mesh_import(&t->in, &t->config, NULL, &t->mesh, &t->report);
     if (status) {
         CHECK(t->acc.bytes == 0);
         CHECK(!t->mesh.vertex && t->mesh.face_count == 0);

@@ -182,7 +182,7 @@ static void run_to(model *m, bool guided, uint32_t faces, run *r)
     uint32_t *ended;
 
     m->config.guide = guided ? &m->guide.use : NULL;
-    CHECK(enc_mesh_import(&m->input, &m->config, &r->mesh, &report) ==
+    CHECK(enc_mesh_import(&m->input, &m->config, NULL, &r->mesh, &report) ==
           PMESH_OK);
     CHECK(enc_schedule_build(&r->mesh, &m->config, 0, &r->schedule) ==
           PMESH_OK);

@@ -174,7 +174,7 @@ TEST(import_survives_every_failing_allocation)
             t.config.allocator =
                 (pmesh_allocator){ import_alloc, import_release, &t.acc };
             const pmesh_status status =
-                enc_mesh_import(&t.in, &t.config, &t.mesh, &t.report);
+                enc_mesh_import(&t.in, &t.config, NULL, &t.mesh, &t.report);
             if (status)
                 CHECK(t.acc.bytes == 0);
             enc_mesh_destroy(&t.mesh);

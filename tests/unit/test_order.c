@@ -138,7 +138,7 @@ TEST(order_survives_every_failing_allocation)
         t.acc.allowed = allowed;
         t.config.allocator =
             (pmesh_allocator){ import_alloc, import_release, &t.acc };
-        status = enc_mesh_import(&t.in, &t.config, &t.mesh, &t.report);
+        status = enc_mesh_import(&t.in, &t.config, NULL, &t.mesh, &t.report);
         CHECK(status == PMESH_OK || t.acc.bytes == 0);
         import_finish(&t);
     }

@@ -159,7 +159,7 @@ static pmesh_status import(trial *t)
                                   .attribute_count = t->attributes };
     pmesh_encode_report report = { 0 };
 
-    return enc_mesh_import(&in, &t->config, &t->mesh, &report);
+    return enc_mesh_import(&in, &t->config, NULL, &t->mesh, &report);
 }
 
 static trial trial_of(soup *s, look how)

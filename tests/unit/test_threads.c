@@ -277,6 +277,25 @@ TEST(threads_do_not_change_a_byte_of_joined_faces)
     shape_free(shape);
 }
 
+/* Edges are paired by blocks of vertices; the half-edges of a face may lie in
+ * several. */
+TEST(threads_do_not_change_a_byte_of_repeated_faces)
+{
+    const pmesh_encoder_config config = pmesh_encoder_config_default();
+    shape_mesh *shape = shape_make(SHAPE_TORUS, 60, 3);
+    const size_t count = shape->input.face_count;
+    uint32_t *face = shape->indices;
+    pmesh_encode_report report;
+
+    for (size_t i = 0; i + 1 < count; i += 7) /* turned by one corner */
+        for (size_t k = 0; k < 3; k++)
+            face[3 * i + k] = face[3 * (i + 1) + (k + 1) % 3];
+    free(bake(shape, config, 2, &report).data);
+    CHECK(report.duplicate_faces == (count + 5) / 7);
+    check_threads(shape, &config);
+    shape_free(shape);
+}
+
 /* ---- hooks --------------------------------------------------------------- */
 
 typedef struct witness {
