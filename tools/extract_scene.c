@@ -38,7 +38,9 @@ uint64_t extract_face_bound(uint32_t faces, double ratio, uint64_t all)
     if (ratio >= 0) {
         /* 29 % of 100 faces are 29, though 0.29 * 100 is a little less. */
         const double share = floor(ratio * (double)all * (1 + DBL_EPSILON));
-        const uint64_t most = share < 1 ? 1 : (uint64_t)share;
+        const uint64_t most = share < 1        ? 1
+                              : share < 0x1p64 ? (uint64_t)share
+                                               : UINT64_MAX;
         if (bound == 0 || most < bound)
             bound = most;
     }

@@ -5,17 +5,10 @@
 static uint64_t to_whole(const gltf_item &item, const char *member,
                          const gltf_json &value)
 {
-    constexpr double limit = 9007199254740992.0; /* 2^53 */
-    if (value.is_number_unsigned() &&
-        value.get<uint64_t>() <= uint64_t{1} << 53)
-        return value.get<uint64_t>();
-    if (value.is_number_float()) {
-        const double real = value.get<double>();
-        if (real >= 0.0 && real < limit &&
-            real == static_cast<double>(static_cast<uint64_t>(real)))
-            return static_cast<uint64_t>(real);
-    }
-    item.fail(std::string(member) + " is not a whole number in range");
+    const uint64_t number = gltf_number(value);
+    if (number == UINT64_MAX)
+        item.fail(std::string(member) + " is not a whole number in range");
+    return number;
 }
 
 uint32_t gltf_to_id(const gltf_item &item, const char *member,

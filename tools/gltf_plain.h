@@ -6,6 +6,7 @@
 #ifndef GLTF_PLAIN_H
 #define GLTF_PLAIN_H
 
+#include <cmath>
 #include <cstdint>
 #include <set>
 #include <stdexcept>
@@ -40,6 +41,35 @@ json &gltf_list(json &of, const char *name)
         at = json::array();
     return at;
 }
+
+/* A whole number up to 2^53; UINT64_MAX for any other value: a conversion of
+ * nlohmann's takes what is too large, or not whole, for something else. */
+template <class json>
+uint64_t gltf_number(const json &value)
+{
+    constexpr double limit = 9007199254740992.0; /* 2^53 */
+    if (value.is_number_float()) {
+        const double real = value.template get<double>();
+        return real >= 0 && real <= limit && real == std::floor(real)
+                   ? static_cast<uint64_t>(real)
+                   : UINT64_MAX;
+    }
+    if (!value.is_number_integer())
+        return UINT64_MAX;
+    const auto whole = value.template get<int64_t>(); /* < 0 from 2^63 on */
+    return whole >= 0 && whole <= int64_t{ 1 } << 53
+               ? static_cast<uint64_t>(whole)
+               : UINT64_MAX;
+}
+
+/* An element's number; GLTF_NONE, which no list has, for any other value. */
+template <class json>
+uint32_t gltf_number_of(const json &value)
+{
+    const uint64_t number = gltf_number(value);
+    return number < GLTF_NONE ? static_cast<uint32_t>(number) : GLTF_NONE;
+}
+
 using gltf_bytes = std::vector<uint8_t>;
 
 /* What a buffer holds: bytes of its own, or the source's. */

@@ -30,16 +30,6 @@ matrix multiply(const matrix &a, const matrix &b)
     return out;
 }
 
-/* An element's number; SIZE_MAX, which no list has, for anything else: what
- * refers to it is checked by nobody before. */
-size_t index_of(const gltf_json &value)
-{
-    if (!value.is_number_float())
-        return value.is_number() ? value.get<size_t>() : SIZE_MAX;
-    const double real = value.get<double>();
-    return real >= 0 && real < 0x1p53 ? static_cast<size_t>(real) : SIZE_MAX;
-}
-
 /*
  * At least the largest singular value of the upper 3 x 3, and equal to it if
  * that is a rotation behind a scale along the axes: the root of the largest
@@ -136,7 +126,7 @@ void measure::walk()
     for (const gltf_json &node : nodes)
         if (node.contains("children"))
             for (const gltf_json &c : node["children"])
-                child[c.get<size_t>()] = true;
+                child[gltf_number_of(c)] = true;
     for (size_t i = 0; i < nodes.size(); i++)
         if (!child[i]) {
             world[i] = local(nodes[i]);
@@ -148,7 +138,7 @@ void measure::walk()
         if (!node.contains("children"))
             continue;
         for (const gltf_json &c : node["children"]) {
-            const size_t id = c.get<size_t>();
+            const uint32_t id = gltf_number_of(c);
             if (seen[id])
                 continue;
             seen[id] = true;
@@ -165,7 +155,7 @@ matrix measure::bind(const gltf_json &skin, size_t joint)
     if (!skin.contains("inverseBindMatrices"))
         return out;
     const gltf_item accessor{
-        list("accessors").at(skin["inverseBindMatrices"].get<size_t>()),
+        list("accessors").at(gltf_number_of(skin["inverseBindMatrices"])),
         "accessors", 0
     };
     const uint32_t number =
@@ -202,7 +192,7 @@ double measure::of_joints(const gltf_json &skin)
         return 1;
     const gltf_json &joints = skin["joints"];
     for (size_t i = 0; i < joints.size(); i++) {
-        const size_t node = index_of(joints[i]);
+        const uint32_t node = gltf_number_of(joints[i]);
         if (node < world.size())
             largest = std::fmax(largest,
                                 factor(multiply(world[node], bind(skin, i))));
@@ -229,9 +219,10 @@ std::vector<double> measure::run()
         const gltf_json &node = nodes[i];
         if (!node.contains("mesh"))
             continue;
-        const size_t mesh = node["mesh"].get<size_t>();
-        const size_t skin =
-            node.contains("skin") ? index_of(node["skin"]) : SIZE_MAX;
+        const uint32_t mesh = gltf_number_of(node["mesh"]);
+        const uint32_t skin = node.contains("skin")
+                                  ? gltf_number_of(node["skin"])
+                                  : GLTF_NONE;
         const double scale =
             skin < skin_count ? of_skin(skin) : factor(world[i]);
         if (mesh < scales.size())

@@ -13,7 +13,7 @@ namespace {
 
 const uint32_t none = UINT32_MAX;
 
-unsigned size_of(int type)
+unsigned size_of(uint32_t type)
 {
     return type == GLTF_F32 || type == GLTF_U32 ? 4
            : type == GLTF_I8 || type == GLTF_U8 ? 1
@@ -27,7 +27,7 @@ void put(std::vector<uint8_t> &out, uint32_t bits, unsigned size)
 }
 
 /* The integer nearest to `value`, in the range of the type. */
-uint32_t to_integer(double value, int type)
+uint32_t to_integer(double value, uint32_t type)
 {
     const bool is_signed = type == GLTF_I8 || type == GLTF_I16;
     const double last =
@@ -38,7 +38,7 @@ uint32_t to_integer(double value, int type)
         static_cast<int64_t>(std::fmin(std::fmax(rounded, low), last)));
 }
 
-double unit_of(int type)
+double unit_of(uint32_t type)
 {
     return type == GLTF_U8    ? 255
            : type == GLTF_I8  ? 127
@@ -48,7 +48,7 @@ double unit_of(int type)
 
 /* Packs rows, each padded to 4 bytes, as vertex data have to be. */
 scene_array pack(const std::vector<float> &values, unsigned components,
-                 int type, bool normalised)
+                 uint32_t type, bool normalised)
 {
     scene_array out;
     const unsigned size = size_of(type);
@@ -138,20 +138,20 @@ void tidy_skin(std::vector<std::vector<float> *> &joints,
 }
 
 /* The type to store by; floats where glTF allows no other without extension. */
-int stored_type(const std::string &semantic, const scene_form &form,
-                bool whole_weights)
+uint32_t stored_type(const std::string &semantic, const scene_form &form,
+                     bool whole_weights)
 {
-    const int type = form.component_type;
+    const uint32_t type = form.component_type, floats = GLTF_F32;
     const bool small = type == GLTF_U8 || type == GLTF_U16;
     if (starts(semantic, "JOINTS_"))
         return type == GLTF_U8 ? GLTF_U8 : GLTF_U16;
     if (starts(semantic, "WEIGHTS_") && whole_weights)
         return GLTF_U16;
     if (starts(semantic, "COLOR_") || starts(semantic, "TEXCOORD_"))
-        return small && form.normalised ? type : GLTF_F32;
+        return small && form.normalised ? type : floats;
     if (semantic[0] == '_')
-        return small || type == GLTF_I8 || type == GLTF_I16 ? type : GLTF_F32;
-    return GLTF_F32;
+        return small || type == GLTF_I8 || type == GLTF_I16 ? type : floats;
+    return floats;
 }
 
 } // namespace
@@ -269,16 +269,15 @@ scene_array scene_geometry::positions() const
     return out;
 }
 
-const std::vector<float> &scene_geometry::channel(int at)
+const std::vector<float> &scene_geometry::channel(uint32_t at)
 {
-    if (at < 0 || static_cast<uint32_t>(at) >= header.attribute_count)
+    if (at >= header.attribute_count)
         throw std::runtime_error("a primitive's channel is not in its mesh");
-    std::vector<float> &values = channels[static_cast<size_t>(at)];
+    std::vector<float> &values = channels[at];
     if (values.empty()) {
         values.resize(static_cast<size_t>(view.vertex_count) *
                       header.attributes[at].components);
-        pmesh_decoder_copy_attribute(decoder, static_cast<uint32_t>(at),
-                                     values.data(), 0);
+        pmesh_decoder_copy_attribute(decoder, at, values.data(), 0);
     }
     return values;
 }
@@ -318,7 +317,7 @@ scene_geometry::attributes(const std::map<std::string, scene_form> &forms)
     }
     tidy_skin(joints, weights, whole_weights);
     for (const auto &[semantic, form] : forms) {
-        const int type = stored_type(semantic, form, whole_weights);
+        const uint32_t type = stored_type(semantic, form, whole_weights);
         scene_array &to = out[semantic] =
             pack(values[semantic], form.components, type,
                  type != GLTF_F32 &&

@@ -15,9 +15,9 @@
 
 /* How an attribute was stored, and is to be again. */
 struct scene_form {
-    int channel; /* of the mesh */
+    uint32_t channel; /* of the mesh */
     unsigned components;
-    int component_type;
+    uint32_t component_type;
     bool normalised, exact;
 };
 
@@ -33,7 +33,7 @@ struct scene_array {
     std::vector<uint8_t> bytes;
     size_t count = 0;
     unsigned components = 0, stride = 0;
-    int component_type = 0;
+    uint32_t component_type = 0;
     bool normalised = false;
     std::vector<float> low, high; /* of floats */
     scene_grid grid;
@@ -75,7 +75,7 @@ private:
     std::vector<uint32_t> wedges, corners;    /* of the chosen faces */
 
     void find_grid(bool inflated);
-    const std::vector<float> &channel(int number);
+    const std::vector<float> &channel(uint32_t number);
     std::vector<float> gather(const scene_form &form);
 };
 

@@ -17,8 +17,8 @@ std::vector<std::set<uint32_t>> streams_of(const gltf_document &doc)
         for (const gltf_document &p : mesh.at("primitives")) {
             const auto extensions = p.find("extensions");
             if (extensions != p.end() && extensions->contains(GLTF_PROGRESSIVE))
-                streams.back().insert(extensions->at(GLTF_PROGRESSIVE)
-                                          .at("mesh").get<uint32_t>());
+                streams.back().insert(gltf_number_of(
+                    extensions->at(GLTF_PROGRESSIVE).at("mesh")));
         }
     }
     return streams;
@@ -35,9 +35,10 @@ void count(const pmesh_scene *scene, uint32_t mesh_count, uint64_t *instances)
         return;
     for (const gltf_document &node : *nodes) {
         const auto mesh = node.find("mesh");
-        if (mesh != node.end() && mesh->is_number_unsigned() &&
-            *mesh < shown.size())
-            shown[mesh->get<size_t>()]++;
+        const uint32_t number =
+            mesh == node.end() ? GLTF_NONE : gltf_number_of(*mesh);
+        if (number < shown.size())
+            shown[number]++;
     }
     for (size_t i = 0; i < streams.size(); i++)
         for (const uint32_t stream : streams[i])

@@ -109,17 +109,15 @@ size_t scene_writer::image_of(const gltf_document &slot) const
     const gltf_document &index = member(slot, "index");
     const gltf_document &textures = member(doc, "textures");
 
-    if (!index.is_number_unsigned() || index >= textures.size())
+    if (gltf_number_of(index) >= textures.size())
         return SIZE_MAX;
-    const gltf_document &texture = textures.at(index.get<size_t>());
+    const gltf_document &texture = textures.at(gltf_number_of(index));
     const gltf_document *source = &member(texture, "source");
     for (const gltf_document &extension : member(texture, "extensions"))
         if (!source->is_number_unsigned())
             source = &member(extension, "source");
-    return source->is_number_unsigned() &&
-                   *source < member(doc, "images").size()
-               ? source->get<size_t>()
-               : SIZE_MAX;
+    const uint32_t image = gltf_number_of(*source);
+    return image < member(doc, "images").size() ? image : SIZE_MAX;
 }
 
 /* Makes room for one more image: their array doubles. */
@@ -144,11 +142,11 @@ const char *scene_writer::add_image(const gltf_document &image, size_t number)
     if (!image.contains("bufferView"))
         return nullptr;
     const gltf_document &view =
-        doc["bufferViews"].at(image["bufferView"].get<size_t>());
+        doc["bufferViews"].at(gltf_number_of(image["bufferView"]));
     const pmesh_scene_bytes all =
-        pmesh_scene_resource(scene, view.at("buffer").get<uint32_t>());
-    const auto offset = view.value("byteOffset", uint64_t{ 0 });
-    const auto size = view.at("byteLength").get<uint64_t>();
+        pmesh_scene_resource(scene, gltf_number_of(view.at("buffer")));
+    const uint64_t offset = offset_of(view);
+    const uint64_t size = gltf_number(view.at("byteLength"));
     if (!all.data || offset > all.arrived || size > all.arrived - offset)
         return nullptr;
     const uint8_t *data = static_cast<const uint8_t *>(all.data) + offset;

@@ -54,9 +54,9 @@ void scene_writer::add_level(size_t level, const gltf_document &originals)
             if (found != p.end() && found->contains(GLTF_PROGRESSIVE))
                 share = std::min(share,
                                  coverage(pmesh_scene_mesh(
-                                     scene, found->at(GLTF_PROGRESSIVE)
-                                                .at("mesh")
-                                                .get<uint32_t>())));
+                                     scene, gltf_number_of(
+                                                found->at(GLTF_PROGRESSIVE)
+                                                    .at("mesh")))));
         }
         if (!fill(mesh) && level > 0)
             continue;
@@ -74,7 +74,7 @@ void scene_writer::add_level(size_t level, const gltf_document &originals)
 void scene_writer::chain_node(size_t node, const std::vector<size_t> &chain)
 {
     gltf_document &nodes = doc["nodes"];
-    const auto mesh = nodes[node].at("mesh").get<size_t>();
+    const uint32_t mesh = gltf_number_of(nodes[node].at("mesh"));
     gltf_document ids = gltf_document::array(), shares = ids;
 
     if (nodes[node].contains("children")) {
@@ -116,7 +116,8 @@ void scene_writer::lods()
     const size_t nodes = doc.contains("nodes") ? doc["nodes"].size() : 0;
     for (size_t i = 0; i < nodes; i++) {
         const gltf_document &node = doc["nodes"][i];
-        const size_t mesh = node.value("mesh", originals.size());
+        const uint32_t mesh =
+            node.contains("mesh") ? gltf_number_of(node["mesh"]) : GLTF_NONE;
         if (mesh >= originals.size() || chains[mesh].empty())
             continue;
         chain_node(i, chains[mesh]);

@@ -160,7 +160,7 @@ void note_kept(const gltf_json &in, asset *notes)
     size_t kept = 0;
     for (const gltf_json &mesh : in["meshes"])
         for (const gltf_json &p : mesh["primitives"])
-            kept += p.value("mode", 4) < 4;
+            kept += p.contains("mode") && gltf_number_of(p["mode"]) < 4;
     if (kept > 0)
         asset_warn(notes, "%zu primitives of points or lines are kept as they "
                    "are", kept);

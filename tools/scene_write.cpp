@@ -43,7 +43,7 @@ std::vector<size_t> scene_writer::free_list(const char *name)
             .value(GLTF_PROGRESSIVE, gltf_document::object());
     for (const gltf_document &number :
          root.value(name, gltf_document::array())) {
-        const size_t at = number.get<size_t>();
+        const uint32_t at = gltf_number_of(number);
         if (at >= size)
             throw std::runtime_error("a free place is out of range");
         numbers.push_back(at);
@@ -190,10 +190,11 @@ scene_form scene_writer::form(const gltf_document &record) const
 {
     static const char *const types[] = { "SCALAR", "VEC2", "VEC3", "VEC4" };
     const std::string type = record.at("type").get<std::string>();
-    scene_form f{ record.at("channel").get<int>(), 0,
-                  record.value("componentType", 5126),
+    scene_form f{ gltf_number_of(record.at("channel")), 0, GLTF_F32,
                   record.value("normalized", false),
                   record.value("exact", false) };
+    if (record.contains("componentType"))
+        f.component_type = gltf_number_of(record["componentType"]);
     for (unsigned i = 0; i < 4; i++)
         if (type == types[i])
             f.components = i + 1;
@@ -202,7 +203,7 @@ scene_form scene_writer::form(const gltf_document &record) const
 
 scene_geometry &scene_writer::geometry(const gltf_document &record)
 {
-    const auto number = record.at("mesh").get<uint32_t>();
+    const uint32_t number = gltf_number_of(record.at("mesh"));
     auto &mesh = meshes[number];
     if (!mesh)
         mesh = std::make_unique<scene_geometry>(
@@ -216,7 +217,7 @@ void scene_writer::primitive(gltf_document &p)
     scene_geometry &mesh = geometry(record);
     std::map<std::string, scene_form> forms;
 
-    mesh.choose(record.at("material").get<uint32_t>());
+    mesh.choose(gltf_number_of(record.at("material")));
     for (const auto &[name, one] : record.at("attributes").items())
         if (name != "POSITION")
             forms[name] = form(one);
@@ -268,21 +269,36 @@ void scene_writer::primitives()
 
 /* ---- resources ---------------------------------------------------------- */
 
+/* GLTF_NONE if it has none. */
+static uint32_t buffer_of(const gltf_document &view)
+{
+    const auto found = view.find("buffer");
+    return found == view.end() ? GLTF_NONE : gltf_number_of(*found);
+}
+
+uint64_t scene_writer::offset_of(const gltf_document &view)
+{
+    const auto found = view.find("byteOffset");
+    const uint64_t offset = found == view.end() ? 0 : gltf_number(*found);
+    if (offset == UINT64_MAX)
+        throw std::runtime_error("a view begins nowhere");
+    return offset;
+}
+
 /* Without their data; their accessors become free places. */
 void scene_writer::drop_animations()
 {
-    std::vector<bool> used;
+    std::vector<bool> used(doc["accessors"].size());
     asset_warn(notes, "the animations have not arrived and are left out");
     for (const gltf_document &animation : doc["animations"])
         for (const gltf_document &sampler : animation.at("samplers"))
             for (const char *end : { "input", "output" }) {
-                const size_t at = sampler.at(end).get<size_t>();
-                if (at >= used.size())
-                    used.resize(at + 1);
-                used[at] = true;
+                const uint32_t at = gltf_number_of(sampler.at(end));
+                if (at < used.size())
+                    used[at] = true;
             }
     gltf_erase(doc, "animations");
-    for (size_t i = 0; i < used.size() && i < doc["accessors"].size(); i++)
+    for (size_t i = 0; i < used.size(); i++)
         if (used[i])
             doc["accessors"][i] = { { "componentType", 5126 },
                                     { "count", 1 },
@@ -297,8 +313,8 @@ void scene_writer::missing_images(const std::vector<bool> &missing)
         if (!image.contains("bufferView"))
             continue;
         gltf_document &view =
-            doc["bufferViews"].at(image["bufferView"].get<size_t>());
-        const size_t buffer = view.value("buffer", missing.size());
+            doc["bufferViews"].at(gltf_number_of(image["bufferView"]));
+        const uint32_t buffer = buffer_of(view);
         if (buffer >= missing.size() || !missing[buffer])
             continue;
         view = { { "buffer", buffer }, { "byteLength", sizeof pixel } };
@@ -321,9 +337,8 @@ void scene_writer::resources()
     image.resize(header.resource_count);
     for (const gltf_document &one : doc.value("images", gltf_document::array()))
         if (one.contains("bufferView")) {
-            const size_t buffer = doc.at("bufferViews")
-                                      .at(one["bufferView"].get<size_t>())
-                                      .value("buffer", missing.size());
+            const uint32_t buffer = buffer_of(
+                doc["bufferViews"].at(gltf_number_of(one["bufferView"])));
             if (buffer < image.size())
                 image[buffer] = true;
         }
@@ -366,13 +381,13 @@ void scene_writer::move_views()
             throw std::runtime_error("a view is no object");
         if (!view.contains("buffer"))
             continue;
-        const auto number = view["buffer"].get<size_t>();
-        const size_t start = resource_start.at(number);
+        const uint32_t number = buffer_of(view);
+        const uint64_t start = resource_start.at(number);
         if (in_stream[number])
             image_views.push_back(
                 static_cast<size_t>(&view - &doc["bufferViews"][0]));
         view["buffer"] = 0;
-        view["byteOffset"] = start + view.value("byteOffset", size_t{ 0 });
+        view["byteOffset"] = start + offset_of(view);
     }
 }
 
@@ -405,7 +420,7 @@ void scene_writer::add_stream()
     align(4);
     for (const size_t at : image_views) {
         gltf_document &view = doc["bufferViews"][at];
-        view["byteOffset"] = bin.size() + view["byteOffset"].get<size_t>();
+        view["byteOffset"] = bin.size() + offset_of(view);
     }
     gltf_object(doc, "extensions")[GLTF_PROGRESSIVE] = { { "bufferView",
                                               doc["bufferViews"].size() } };
@@ -508,12 +523,15 @@ static bool find_view(const uint8_t *json, size_t json_size, size_t *offset,
 {
     const gltf_json doc = gltf_json::parse(json, json + json_size);
     const gltf_json &view = doc.at("bufferViews")
-                                .at(doc.at("extensions")
+                                .at(gltf_number_of(
+                                    doc.at("extensions")
                                         .at(GLTF_PROGRESSIVE)
-                                        .at("bufferView")
-                                        .get<size_t>());
-    *offset = view.value("byteOffset", size_t{ 0 });
-    *size = view.at("byteLength").get<size_t>();
+                                        .at("bufferView")));
+    const uint64_t start =
+        view.contains("byteOffset") ? gltf_number(view["byteOffset"]) : 0;
+    *offset = static_cast<size_t>(std::min<uint64_t>(start, SIZE_MAX));
+    *size = static_cast<size_t>(
+        std::min<uint64_t>(gltf_number(view.at("byteLength")), SIZE_MAX));
     return view.at("buffer") == 0;
 }
 

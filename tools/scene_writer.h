@@ -75,6 +75,7 @@ private:
     void drop_animations();
     void missing_images(const std::vector<bool> &missing);
     void resources();
+    static uint64_t offset_of(const gltf_document &view);
     void move_views();
     void drop_marks();
     void add_stream();

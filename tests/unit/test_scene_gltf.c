@@ -19,10 +19,15 @@ static int collect(void *user, const void *data, size_t size)
     return 0;
 }
 
-/* A scene of one torus with this document. */
-static pmesh_scene *scene_with(const char *document)
+static const char resource[100000] = "0123456789";
+
+/* A scene of one mesh with this document, of which the last bytes have not
+ * arrived. */
+static pmesh_scene *scene_of(shape_kind kind, uint32_t size,
+                             pmesh_scene_blob document,
+                             pmesh_document_form form, size_t missing)
 {
-    shape_mesh *shape = shape_make(SHAPE_TORUS, 8, 1);
+    shape_mesh *shape = shape_make(kind, size, 1);
     const pmesh_encoder_config config = pmesh_encoder_config_default();
     pmesh_encode_report report;
     shape_bytes stream;
@@ -32,17 +37,39 @@ static pmesh_scene *scene_with(const char *document)
     CHECK(shape_bake(shape, &config, &stream, &report) == PMESH_OK);
     shape_free(shape);
     const pmesh_scene_mesh_input mesh = { stream.data, stream.size, 1 };
-    const pmesh_scene_blob blob = { "0123456789", 10 };
+    const pmesh_scene_blob blob = { resource, sizeof resource };
     const pmesh_scene_input input = {
         .meshes = &mesh, .mesh_count = 1,
-        .document = { document, strlen(document) },
+        .document = document, .document_form = form,
         .resources = &blob, .resource_count = 1
     };
     CHECK(pmesh_scene_encode(&input, NULL, collect, &file, NULL) == PMESH_OK);
     CHECK(pmesh_scene_create(&scene, NULL) == PMESH_OK);
-    CHECK(pmesh_scene_feed(scene, file.data, file.size) == PMESH_OK);
+    CHECK(pmesh_scene_feed(scene, file.data, file.size - missing) ==
+          (missing > 0 ? PMESH_NEED_DATA : PMESH_OK));
     asset_bytes_free(&file);
     free(stream.data);
+    return scene;
+}
+
+static pmesh_scene *scene_with(const char *document)
+{
+    return scene_of(SHAPE_TORUS, 8,
+                    (pmesh_scene_blob){ document, strlen(document) },
+                    PMESH_DOCUMENT_PLAIN, 0);
+}
+
+/* The same packed, and of a shape of our choice; frees the text. */
+static pmesh_scene *scene_packed(shape_kind kind, uint32_t size,
+                                 asset_bytes *text)
+{
+    asset_bytes packed = { 0 };
+    CHECK(pack_zlib(text->data, text->size, &packed));
+    pmesh_scene *scene =
+        scene_of(kind, size, (pmesh_scene_blob){ packed.data, packed.size },
+                 PMESH_DOCUMENT_ZLIB, 0);
+    asset_bytes_free(&packed);
+    asset_bytes_free(text);
     return scene;
 }
 
@@ -106,6 +133,55 @@ TEST(scene_documents_that_lie_are_refused)
         CHECK(!writes(documents[i]));
 }
 
+/* Conversions of such numbers are undefined, or take them for others. */
+TEST(scene_documents_with_numbers_that_are_none_are_refused)
+{
+    static const char *const numbers[] = { "1e300", "-1", "-1e300", "0.5",
+                                           "4294967296", "9007199254740994",
+                                           "18446744073709551615", "null" };
+    static const char *const documents[] = {
+        PRIMITIVE("{\"mesh\":%s,\"material\":0,\"attributes\":{}}"),
+        PRIMITIVE("{\"mesh\":0,\"material\":%s,\"attributes\":{}}"),
+        PRIMITIVE("{\"mesh\":0,\"material\":0,\"attributes\":{\"NORMAL\":"
+                  "{\"channel\":%s,\"type\":\"VEC3\"}}}"),
+        "{" ASSET ",\"meshes\":[],\"bufferViews\":[{\"buffer\":%s}]}",
+        "{" ASSET ",\"meshes\":[],\"images\":[{\"bufferView\":%s}]}",
+        "{" ASSET ",\"meshes\":[],\"accessors\":[{}],\"extensions\":{"
+        "\"PMESH_progressive\":{\"accessors\":[%s]}}}"
+    };
+    char text[300];
+    for (size_t i = 0; i < sizeof documents / sizeof *documents; i++)
+        for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+            snprintf(text, sizeof text, documents[i], numbers[k]);
+            CHECK(!writes(text));
+        }
+    CHECK(!writes("{" ASSET ",\"meshes\":[],\"bufferViews\":["
+                  "{\"buffer\":0,\"byteOffset\":1e300}]}"));
+    CHECK(writes("{" ASSET ",\"meshes\":[],\"bufferViews\":["
+                 "{\"buffer\":0.0,\"byteOffset\":5.0}]}"));
+}
+
+/* What may be left out is. */
+TEST(scene_documents_may_refer_to_nothing_from_nodes_and_animations)
+{
+    static const char document[] =
+        "{" ASSET ",\"meshes\":[{\"primitives\":[]}],\"accessors\":[{}],"
+        "\"nodes\":[{\"mesh\":1e300},{\"mesh\":-1},{\"mesh\":0.5},"
+        "{\"mesh\":18446744073709551615}],"
+        "\"animations\":[{\"samplers\":[{\"input\":18446744073709551615,"
+        "\"output\":1099511627776},{\"input\":1e300,\"output\":-1}]}]}";
+    pmesh_scene *scene = scene_of(
+        SHAPE_TORUS, 8, (pmesh_scene_blob){ document, sizeof document - 1 },
+        PMESH_DOCUMENT_PLAIN, 50);
+    scene_budget budget;
+    asset_error error;
+    CHECK(writes_as_glb(scene, NULL));
+    CHECK(scene_budget_open(scene, &budget, &error));
+    CHECK(budget.instances[0] == 1);
+    scene_budget_close(&budget);
+    pmesh_scene_destroy(scene);
+}
+
 /* Places are taken from the front of a list in which they stand one by one:
  * some seconds, if each moved the others. */
 TEST(scene_documents_may_have_many_free_places)
@@ -125,24 +201,31 @@ TEST(scene_documents_may_have_many_free_places)
     asset_bytes_free(&text);
 }
 
+/* A scene with an image that is nowhere, others that share a view of `size`
+ * bytes, and three materials for each. */
+static pmesh_scene *scene_with_images(int images, size_t size)
+{
+    asset_bytes text = { 0 };
+    asset_printf(&text, "{" ASSET ",\"meshes\":[],\"bufferViews\":[{"
+                 "\"buffer\":0,\"byteLength\":%zu}],\"images\":[{}", size);
+    for (int i = 1; i < images; i++)
+        asset_printf(&text, ",{\"bufferView\":0}");
+    asset_printf(&text, "],\"textures\":[{\"source\":0}");
+    for (int i = 1; i < images; i++)
+        asset_printf(&text, ",{\"source\":%d}", i);
+    asset_printf(&text, "],\"materials\":[{}");
+    for (int i = 0; i < 3 * images; i++)
+        asset_printf(&text, ",{\"emissiveTexture\":{\"index\":%d}}",
+                     i % images);
+    asset_put(&text, "]}", 2);
+    return scene_packed(SHAPE_TORUS, 8, &text);
+}
+
 TEST(scene_library_has_an_image_once)
 {
     enum { IMAGES = 9 };
-    asset_bytes text = { 0 };
     scene_library library = { .stem = "s" };
-    asset_printf(&text, "{" ASSET ",\"meshes\":[],\"bufferViews\":[{"
-                 "\"buffer\":0,\"byteLength\":5}],\"images\":[{}");
-    for (int i = 1; i < IMAGES; i++)
-        asset_printf(&text, ",{\"bufferView\":0}");
-    asset_printf(&text, "],\"textures\":[{\"source\":0}");
-    for (int i = 1; i < IMAGES; i++)
-        asset_printf(&text, ",{\"source\":%d}", i);
-    asset_printf(&text, "],\"materials\":[{}");
-    for (int i = 0; i < 3 * IMAGES; i++)
-        asset_printf(&text, ",{\"emissiveTexture\":{\"index\":%d}}",
-                     i % IMAGES);
-    asset_put(&text, "]}", 3);
-    pmesh_scene *scene = scene_with((const char *)text.data);
+    pmesh_scene *scene = scene_with_images(IMAGES, 5);
     CHECK(writes_as_glb(scene, &library));
     CHECK(library.image_count == IMAGES - 1 && library.missing);
     for (size_t i = 0; i < library.image_count; i++)
@@ -151,7 +234,6 @@ TEST(scene_library_has_an_image_once)
               memcmp(library.images[i].data, "01234", 5) == 0);
     scene_library_free(&library);
     pmesh_scene_destroy(scene); /* the images are its bytes */
-    asset_bytes_free(&text);
 }
 
 TEST(scene_budgets_do_not_wrap_around)
