@@ -51,6 +51,11 @@ public:
      * as an index that comes twice is an error to many. */
     void choose(uint32_t material);
 
+    /* Of the chosen faces, as they are written; channels are the mesh's. */
+    size_t vertex_count() const { return wedges.size(); }
+    size_t corner_count() const { return corners.size(); }
+    size_t channel_count() const { return header.attribute_count; }
+
     scene_array indices() const;
     scene_array positions() const;
 

@@ -14,6 +14,8 @@
 
 namespace {
 
+constexpr uint64_t block = 4096;
+
 /* Made when it is first asked for: before main() nobody tells of memory that
  * lacks. */
 const gltf_document &nothing()
@@ -134,7 +136,8 @@ static void reserve_image(scene_library *to)
     to->images = grown;
 }
 
-/* The image's bytes, added to the library; its ending, or nullptr. */
+/* The image's bytes, added to the library; its ending, or nullptr. Images may
+ * share bytes, but each is a file of its own, of a block at least. */
 const char *scene_writer::add_image(const gltf_document &image, size_t number)
 {
     scene_library *to = style.library;
@@ -149,6 +152,9 @@ const char *scene_writer::add_image(const gltf_document &image, size_t number)
     const uint64_t size = gltf_number(view.at("byteLength"));
     if (!all.data || offset > all.arrived || size > all.arrived - offset)
         return nullptr;
+    if (!gltf_spend(&budget, 1, size + block))
+        throw std::runtime_error("the images are longer than a file of this "
+                                 "size may have");
     const uint8_t *data = static_cast<const uint8_t *>(all.data) + offset;
     reserve_image(to);
     to->images[to->image_count++] = { number, data, static_cast<size_t>(size),

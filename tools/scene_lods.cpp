@@ -46,6 +46,7 @@ void scene_writer::add_level(size_t level, const gltf_document &originals)
 
     pmesh_scene_refine(scene, &target, nullptr);
     meshes.clear();
+    written.clear();
     for (size_t i = 0; i < originals.size(); i++) {
         gltf_document mesh = originals[i];
         double share = 1;

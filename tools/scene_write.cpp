@@ -211,6 +211,28 @@ scene_geometry &scene_writer::geometry(const gltf_document &record)
     return *mesh;
 }
 
+/* What a mesh holds is written once for nothing, for it came with the file. A
+ * few bytes of the document name it, or one of its channels, once more. */
+void scene_writer::pay(const gltf_document &record, const scene_geometry &mesh)
+{
+    const bool first = written.emplace(gltf_number_of(record.at("mesh")),
+                                       gltf_number_of(record.at("material")))
+                           .second;
+    const size_t held = first ? 1 + mesh.channel_count() : 0;
+    size_t named = 1; /* the positions */
+
+    for (const auto &attribute : record.at("attributes").items())
+        named += attribute.key() != "POSITION";
+    for (const gltf_document &target :
+         record.value("targets", gltf_document::array()))
+        named += target.size();
+    if (!gltf_spend(&budget, first ? 0 : mesh.corner_count(), 4) ||
+        !gltf_spend(&budget, named > held ? named - held : 0,
+                    16 * mesh.vertex_count()))
+        throw std::runtime_error("the primitives expand to more than a file "
+                                 "of this size may");
+}
+
 void scene_writer::primitive(gltf_document &p)
 {
     const gltf_document record = p["extensions"][GLTF_PROGRESSIVE];
@@ -218,6 +240,7 @@ void scene_writer::primitive(gltf_document &p)
     std::map<std::string, scene_form> forms;
 
     mesh.choose(gltf_number_of(record.at("material")));
+    pay(record, mesh);
     for (const auto &[name, one] : record.at("attributes").items())
         if (name != "POSITION")
             forms[name] = form(one);

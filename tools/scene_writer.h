@@ -7,6 +7,8 @@
 
 #include <map>
 #include <memory>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "tools/gltf_document.h"
@@ -22,7 +24,8 @@ gltf_document scene_document(const pmesh_scene *scene);
 class scene_writer {
 public:
     scene_writer(pmesh_scene *from, scene_style how, asset *warn)
-        : scene(from), style(how), notes(warn)
+        : scene(from), style(how), notes(warn),
+          budget(gltf_budget_for(pmesh_scene_get_progress(from).bytes))
     {
     }
     void write(asset_bytes *out);
@@ -31,6 +34,8 @@ private:
     pmesh_scene *scene;
     scene_style style;
     asset *notes;
+    gltf_budget budget; /* of images, and what of meshes is written again */
+    std::set<std::pair<uint32_t, uint32_t>> written; /* mesh, material */
     gltf_document doc;
     gltf_bytes bin;
     std::vector<size_t> free_accessors, free_views; /* the last is next */
@@ -59,6 +64,7 @@ private:
     scene_form form(const gltf_document &record) const;
     scene_geometry &geometry(const gltf_document &record);
     gltf_document view_of(const scene_array &data, int target);
+    void pay(const gltf_document &record, const scene_geometry &mesh);
     void primitive(gltf_document &p);
     bool fill(gltf_document &mesh);
     void lods();

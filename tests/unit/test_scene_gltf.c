@@ -201,6 +201,43 @@ TEST(scene_documents_may_have_many_free_places)
     asset_bytes_free(&text);
 }
 
+/* Whether a scene of a sphere is written whose document names its first
+ * material, with `named` attributes and twice as many of morph targets, in
+ * `primitives` primitives. */
+static bool writes_often(int primitives, int named)
+{
+    asset_bytes text = { 0 };
+    asset_printf(&text, "{" ASSET ",\"meshes\":[{\"primitives\":[");
+    for (int i = 0; i < primitives; i++) {
+        asset_printf(&text, "%s{\"extensions\":{\"PMESH_progressive\":{"
+                     "\"mesh\":0,\"material\":0,\"attributes\":{"
+                     "\"POSITION\":{}", i ? "," : "");
+        for (int k = 0; k < named; k++)
+            asset_printf(&text, ",\"_%d\":{\"channel\":0,\"type\":"
+                         "\"VEC3\"}", k);
+        asset_printf(&text, "},\"targets\":[");
+        for (int k = 0; k < 2 * named; k++)
+            asset_printf(&text, "%s{\"POSITION\":{\"channel\":0,"
+                         "\"type\":\"VEC3\"}}", k ? "," : "");
+        asset_printf(&text, "]}}}");
+    }
+    asset_put(&text, "]}]}", 4);
+    pmesh_scene *scene = scene_packed(SHAPE_SPHERE, 64, &text);
+    pmesh_scene_refine(scene, NULL, NULL);
+    const bool ok = writes_as_glb(scene, NULL);
+    pmesh_scene_destroy(scene);
+    return ok;
+}
+
+/* A few kilobytes would become hundreds of megabytes. */
+TEST(scene_documents_name_a_mesh_no_oftener_than_their_size_allows)
+{
+    CHECK(writes_often(100, 0));
+    CHECK(!writes_often(1000, 0));
+    CHECK(writes_often(1, 100));
+    CHECK(!writes_often(1, 1500));
+}
+
 /* A scene with an image that is nowhere, others that share a view of `size`
  * bytes, and three materials for each. */
 static pmesh_scene *scene_with_images(int images, size_t size)
@@ -234,6 +271,16 @@ TEST(scene_library_has_an_image_once)
               memcmp(library.images[i].data, "01234", 5) == 0);
     scene_library_free(&library);
     pmesh_scene_destroy(scene); /* the images are its bytes */
+}
+
+/* Each becomes a file, of the bytes that all share. */
+TEST(scene_library_has_no_more_images_than_a_file_may)
+{
+    scene_library library = { .stem = "s" };
+    pmesh_scene *scene = scene_with_images(2000, sizeof resource);
+    CHECK(!writes_as_glb(scene, &library));
+    scene_library_free(&library);
+    pmesh_scene_destroy(scene);
 }
 
 TEST(scene_budgets_do_not_wrap_around)
