@@ -20,73 +20,118 @@ double guide_number(const guide_json &value, const std::string &where)
 
 /* ---- nearest ------------------------------------------------------------ */
 
+static bool is_finite(const double p[3])
+{
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+/* Vertices at finite places, the first at each, as a tree: node i is a range of
+ * them, of which 2i and 2i + 1 are halves. */
 void guide_points::sort() const
 {
-    double low[3], high[3];
+    const auto at = [this](uint32_t v) { return xyz + 3 * size_t{ v }; };
 
     sorted = true;
     for (size_t v = 0; v < count; v++)
-        for (size_t k = 0; k < 3; k++) {
-            const double t = xyz[3 * v + k];
-            low[k] = v == 0 ? t : std::fmin(low[k], t);
-            high[k] = v == 0 ? t : std::fmax(high[k], t);
-        }
-    for (size_t k = 1; k < 3 && count > 0; k++)
-        if (high[k] - low[k] > high[axis] - low[axis])
-            axis = k;
-    for (size_t v = 0; v < count; v++)
-        if (std::isfinite(xyz[3 * v + axis]))
+        if (is_finite(xyz + 3 * v))
             order.push_back(static_cast<uint32_t>(v));
-    std::sort(order.begin(), order.end(), [this](uint32_t a, uint32_t b) {
-        const double x = xyz[3 * size_t{ a } + axis];
-        const double y = xyz[3 * size_t{ b } + axis];
-        return x != y ? x < y : a < b;
+    std::sort(order.begin(), order.end(), [at](uint32_t a, uint32_t b) {
+        for (size_t k = 0; k < 3; k++)
+            if (at(a)[k] != at(b)[k])
+                return at(a)[k] < at(b)[k];
+        return a < b;
     });
+    order.erase(std::unique(order.begin(), order.end(),
+                            [at](uint32_t a, uint32_t b) {
+                                return std::equal(at(a), at(a) + 3, at(b));
+                            }),
+                order.end());
+    part({ 1, 0, order.size() });
 }
 
-/* From where p would be, outwards on both sides, as long as the axis alone is
- * not further than the best so far. */
-uint32_t guide_points::nearest(const double p[3]) const
+/* Finds the box of a range, and halves it across the longest side. */
+void guide_points::part(const range &r) const
 {
+    point_box box;
+
+    for (size_t i = r.first; i < r.last; i++)
+        for (size_t k = 0; k < 3; k++) {
+            const double t = xyz[3 * size_t{ order[i] } + k];
+            box.low[k] = std::fmin(box.low[k], t);
+            box.high[k] = std::fmax(box.high[k], t);
+        }
+    if (boxes.size() <= r.node)
+        boxes.resize(r.node + 1);
+    boxes[r.node] = box;
+    if (r.is_leaf())
+        return;
+    size_t axis = 0;
+    for (size_t k = 1; k < 3; k++)
+        if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis])
+            axis = k;
+    const auto at = order.begin() + static_cast<ptrdiff_t>(r.first);
+    const auto size = static_cast<ptrdiff_t>(r.last - r.first);
+    std::nth_element(at, at + size / 2, at + size,
+                     [this, axis](uint32_t a, uint32_t b) {
+                         return xyz[3 * size_t{ a } + axis] <
+                                xyz[3 * size_t{ b } + axis];
+                     });
+    part(r.half(0));
+    part(r.half(1));
+}
+
+static double square_to(const point_box &box, const double p[3])
+{
+    double sum = 0;
+    for (size_t k = 0; k < 3; k++) {
+        const double d = std::fmax(0, std::fmax(box.low[k] - p[k],
+                                                p[k] - box.high[k]));
+        sum += d * d;
+    }
+    return sum;
+}
+
+void guide_points::look(uint32_t v, best_point *best) const
+{
+    const double *q = xyz + 3 * size_t{ v };
+    double d = 0;
+
+    best->looked++;
+    for (size_t k = 0; k < 3; k++)
+        d += (q[k] - best->p[k]) * (q[k] - best->p[k]);
+    if (d < best->square || (d == best->square && v < best->found)) {
+        best->square = d;
+        best->found = v;
+    }
+}
+
+/* The nearer half first; none that is further than the best so far. */
+void guide_points::search(const range &r, best_point *best) const
+{
+    if (r.is_leaf()) {
+        for (size_t i = r.first; i < r.last; i++)
+            look(order[i], best);
+        return;
+    }
+    const range halves[] = { r.half(0), r.half(1) };
+    const double reach[] = { square_to(boxes[halves[0].node], best->p),
+                             square_to(boxes[halves[1].node], best->p) };
+    const size_t nearer = reach[1] < reach[0];
+    for (const size_t i : { nearer, 1 - nearer })
+        if (reach[i] <= best->square && reach[i] < HUGE_VAL)
+            search(halves[i], best);
+}
+
+uint32_t guide_points::nearest(const double p[3], uint64_t *looked) const
+{
+    best_point best = { p, HUGE_VAL, UINT32_MAX, 0 };
+
     if (!sorted)
         sort();
-    const auto along = [this](size_t i) {
-        return xyz[3 * size_t{ order[i] } + axis];
-    };
-    const auto begin = std::lower_bound(
-        order.begin(), order.end(), p[axis], [this](uint32_t v, double t) {
-            return xyz[3 * size_t{ v } + axis] < t;
-        });
-    size_t up = static_cast<size_t>(begin - order.begin()), down = up;
-    double best = HUGE_VAL;
-    uint32_t found = UINT32_MAX;
-
-    const auto look = [&](size_t i) {
-        const double *q = xyz + 3 * size_t{ order[i] };
-        double d = 0;
-        for (size_t k = 0; k < 3; k++)
-            d += (q[k] - p[k]) * (q[k] - p[k]);
-        if (d < best || (d == best && order[i] < found)) {
-            best = d;
-            found = order[i];
-        }
-    };
-    const auto reach = [&](size_t i) {
-        const double d = along(i) - p[axis];
-        return d * d <= best;
-    };
-    for (bool more = true; more;) {
-        more = false;
-        if (up < order.size() && reach(up)) {
-            look(up++);
-            more = true;
-        }
-        if (down > 0 && reach(down - 1)) {
-            look(--down);
-            more = true;
-        }
-    }
-    return found;
+    if (is_finite(p))
+        search({ 1, 0, order.size() }, &best);
+    *looked = best.looked;
+    return best.found;
 }
 
 /* ---- places and regions ------------------------------------------------- */
@@ -141,7 +186,7 @@ guide_finder::guide_finder(const asset *of, const guide_json &source)
 uint32_t guide_finder::nearest(const double p[3],
                                const std::string &where) const
 {
-    const uint32_t v = points.nearest(p);
+    const uint32_t v = nearest_of(points, p, where);
 
     if (v == UINT32_MAX)
         guide_fail(where, "the mesh has no vertex at a finite place");
@@ -153,6 +198,18 @@ void guide_finder::look(uint64_t many, const std::string &where) const
     if (many > to_look_at)
         guide_fail(where, "the guide looks at more than 2^32 vertices");
     to_look_at -= many;
+}
+
+/* Where many points are equally far, a search sees them all, each by a jump. */
+uint32_t guide_finder::nearest_of(const guide_points &from, const double p[3],
+                                  const std::string &where) const
+{
+    constexpr uint64_t usual = 256, cost = 32;
+    uint64_t looked;
+    const uint32_t v = from.nearest(p, &looked);
+
+    look(looked > usual ? cost * looked : 0, where);
+    return v;
 }
 
 uint32_t guide_finder::vertex(const guide_json &number,
@@ -253,7 +310,8 @@ std::vector<float> guide_finder::spread(const std::vector<float> &values) const
     const guide_points from(theirs.data(), theirs.size() / 3);
     std::vector<float> out(mesh->vertex_count);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
-        const uint32_t near = from.nearest(mesh->positions + 3 * v);
+        const uint32_t near =
+            nearest_of(from, mesh->positions + 3 * v, "weights");
         out[v] = near == UINT32_MAX ? 0.5f : values[near];
     }
     return out;

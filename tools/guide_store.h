@@ -6,6 +6,7 @@
 #ifndef GUIDE_STORE_H
 #define GUIDE_STORE_H
 
+#include <cmath>
 #include <cstdint>
 #include <list>
 #include <stdexcept>
@@ -34,22 +35,47 @@ struct guide_store {
     void publish(guide *out) const;
 };
 
-/* Points sorted along their widest axis, to look for the nearest. */
+struct point_box {
+    double low[3] = { HUGE_VAL, HUGE_VAL, HUGE_VAL };
+    double high[3] = { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
+};
+
+/* Points in a tree, to look for the nearest. */
 class guide_points {
 public:
     guide_points(const double *from, size_t many) : xyz(from), count(many) {}
 
-    /* Of equally near ones the first; UINT32_MAX if there is none. */
-    uint32_t nearest(const double p[3]) const;
+    /* Of equally near ones the first; UINT32_MAX if there is none. How many
+     * were looked at goes to *looked. */
+    uint32_t nearest(const double p[3], uint64_t *looked) const;
 
 private:
+    struct best_point {
+        const double *p;
+        double square; /* of its distance */
+        uint32_t found;
+        uint64_t looked;
+    };
+    struct range { /* of `order` */
+        size_t node, first, last;
+        bool is_leaf() const { return last - first <= 8; }
+        range half(size_t second) const
+        {
+            const size_t middle = first + (last - first) / 2;
+            return { 2 * node + second, second ? middle : first,
+                     second ? last : middle };
+        }
+    };
     const double *xyz;
     size_t count;
-    mutable size_t axis = 0;
-    mutable bool sorted = false;
-    mutable std::vector<uint32_t> order; /* made when first needed */
+    mutable bool sorted = false; /* what follows is made when first needed */
+    mutable std::vector<uint32_t> order;
+    mutable std::vector<point_box> boxes; /* by node */
 
     void sort() const;
+    void part(const range &r) const;
+    void look(uint32_t v, best_point *best) const;
+    void search(const range &r, best_point *best) const;
 };
 
 /* Turns what a guide file says of vertices into vertices of the mesh. */
@@ -80,6 +106,8 @@ private:
     /* Regions go over all vertices, and a few bytes make one more. */
     void look(uint64_t many, const std::string &where) const;
     uint32_t nearest(const double p[3], const std::string &where) const;
+    uint32_t nearest_of(const guide_points &from, const double p[3],
+                        const std::string &where) const;
     uint32_t vertex(const guide_json &number, const std::string &where) const;
 };
 
