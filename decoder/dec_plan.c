@@ -48,15 +48,73 @@ uint32_t pmesh_plan_pixels(const pmesh_level *levels, uint32_t count,
     return safe < current ? safe : current;
 }
 
+/* ---- many meshes ---------------------------------------------------------- */
+
+/*
+ * What can still become finer is in a heap, whose head covers the most pixels.
+ * It needs no memory: the upper bits of items[i].level are the number of the
+ * item at place i of the heap, the lower ones the level of item i.
+ */
+enum { LEVEL_BITS = 8, MOST_LEVELS = 1 << LEVEL_BITS };
+#define MOST_ITEMS (UINT32_MAX >> LEVEL_BITS)
+
+static uint32_t level_of(const pmesh_plan_item *item)
+{
+    return item->level % MOST_LEVELS;
+}
+
+static uint32_t heap_at(const pmesh_plan_item *items, uint32_t place)
+{
+    return items[place].level >> LEVEL_BITS;
+}
+
+static void heap_put(pmesh_plan_item *items, uint32_t place, uint32_t number)
+{
+    items[place].level = number << LEVEL_BITS | level_of(&items[place]);
+}
+
 static double pixels_of(const pmesh_plan_item *item)
 {
-    return item->pixels_per_unit * (double)item->levels[item->level].error;
+    return item->pixels_per_unit * (double)item->levels[level_of(item)].error;
+}
+
+/* Of equals the first; what covers no number of pixels is in no heap. */
+static bool comes_first(const pmesh_plan_item *items, uint32_t a, uint32_t b)
+{
+    const double x = pixels_of(&items[a]), y = pixels_of(&items[b]);
+    return x > y || (x >= y && a < b);
+}
+
+/* Moves the item at this place down to its own among the first `count`. */
+static void sift(pmesh_plan_item *items, uint32_t place, uint32_t count)
+{
+    const uint32_t number = heap_at(items, place);
+    for (;;) {
+        uint32_t next = 2 * place + 1;
+        if (next >= count)
+            break;
+        if (next + 1 < count && comes_first(items, heap_at(items, next + 1),
+                                            heap_at(items, next)))
+            next++;
+        if (!comes_first(items, heap_at(items, next), number))
+            break;
+        heap_put(items, place, heap_at(items, next));
+        place = next;
+    }
+    heap_put(items, place, number);
+}
+
+static bool wants_more(const pmesh_plan_item *item, double pixels)
+{
+    const uint32_t next = level_of(item) + 1;
+    return next < item->level_count && next < MOST_LEVELS &&
+           pixels_of(item) > pixels;
 }
 
 /* Whether the next level of the item fits into what is left; takes it. */
 static bool advance(pmesh_plan_item *item, uint64_t *faces, uint64_t *bytes)
 {
-    const pmesh_level *now = &item->levels[item->level], *next = now + 1;
+    const pmesh_level *now = &item->levels[level_of(item)], *next = now + 1;
     const uint64_t more_faces = next->faces - now->faces;
     const uint64_t more_bytes = next->bytes - now->bytes;
     if (more_faces > *faces || more_bytes > *bytes)
@@ -75,9 +133,18 @@ static uint64_t left_of(uint64_t budget, uint64_t spent)
     return budget > spent ? budget - spent : 0;
 }
 
-/* A mesh whose next level did not fit has the top bit of `level` set until
- * the end: others may still fit. */
-#define STUCK 0x80000000u
+/* Puts those that want more into the heap; how many there are. */
+static uint32_t make_heap(pmesh_plan_item *items, uint32_t count,
+                          double pixels)
+{
+    uint32_t wanting = 0;
+    for (uint32_t i = 0; i < count && i <= MOST_ITEMS; i++)
+        if (wants_more(&items[i], pixels))
+            heap_put(items, wanting++, i);
+    for (uint32_t i = wanting / 2; i-- > 0;)
+        sift(items, i, wanting);
+    return wanting;
+}
 
 double pmesh_plan_scene(pmesh_plan_item *items, uint32_t count, double pixels,
                         uint64_t faces, uint64_t bytes)
@@ -90,21 +157,16 @@ double pmesh_plan_scene(pmesh_plan_item *items, uint32_t count, double pixels,
     }
     faces = left_of(faces, base_faces);
     bytes = left_of(bytes, base_bytes);
-    for (;;) {
-        pmesh_plan_item *worst = NULL;
-        for (uint32_t i = 0; i < count; i++)
-            if (!(items[i].level & STUCK) &&
-                items[i].level + 1 < items[i].level_count &&
-                pixels_of(&items[i]) > (worst ? pixels_of(worst) : pixels))
-                worst = &items[i];
-        if (!worst)
-            break;
-        if (!advance(worst, &faces, &bytes))
-            worst->level |= STUCK;
+    for (uint32_t left = make_heap(items, count, pixels); left > 0;
+         sift(items, 0, left)) {
+        pmesh_plan_item *worst = &items[heap_at(items, 0)];
+        /* One whose next level does not fit stays: others may still fit. */
+        if (!advance(worst, &faces, &bytes) || !wants_more(worst, pixels))
+            heap_put(items, 0, heap_at(items, --left));
     }
     double largest = 0;
     for (uint32_t i = 0; i < count; i++) {
-        items[i].level &= ~STUCK;
+        items[i].level = level_of(&items[i]);
         const double p = pixels_of(&items[i]);
         largest = p > largest ? p : largest;
     }

@@ -64,9 +64,11 @@ typedef struct pmesh_plan_item {
  * until all are within `pixels`; one whose next level does not fit any more
  * stays as it is. So the largest error on the screen is as small as the budget
  * allows, and equal items get equal levels but for the last steps, which the
- * first items win. Base meshes are taken even if they exceed the budget.
+ * first items win. Base meshes are taken even if they exceed the budget; items
+ * from 2^24 on, and levels from 256 on, are not given more.
  *
- * Time: items times levels given. Returns the largest error left, in pixels.
+ * Time: the levels given, times the logarithm of the items. Returns the largest
+ * error left, in pixels.
  */
 PMESH_API double pmesh_plan_scene(pmesh_plan_item *items, uint32_t count,
                                   double pixels, uint64_t faces,

@@ -1,6 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Which level to show, from the level table. */
 #include "decoder/pmesh_plan.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
 #include "tests/unit/shapes.h"
 #include "tests/unit/test.h"
 
@@ -110,4 +116,84 @@ TEST(plan_of_a_scene_without_budget_meets_the_pixels)
                                                   items[i].pixels_per_unit, 2,
                                                   UINT32_MAX));
     CHECK(pmesh_plan_scene(items, 3, 0, 1, 0) == 16); /* bases at least */
+}
+
+/* Steps of the worst item, with a budget of faces (0: none); one that does not
+ * fit is set aside. */
+static void plan_plainly(pmesh_plan_item *items, uint32_t count, double pixels,
+                         uint64_t faces)
+{
+    uint64_t shown = 0;
+    bool *aside = calloc(count, sizeof *aside);
+    for (uint32_t i = 0; i < count; i++) {
+        items[i].level = 0;
+        shown += items[i].levels[0].faces;
+    }
+    for (;;) {
+        uint32_t worst = count;
+        double most = pixels;
+        for (uint32_t i = 0; i < count; i++) {
+            const pmesh_plan_item *at = &items[i];
+            const double p =
+                at->pixels_per_unit * (double)at->levels[at->level].error;
+            if (!aside[i] && at->level + 1 < at->level_count && p > most) {
+                most = p;
+                worst = i;
+            }
+        }
+        if (worst == count)
+            break;
+        const pmesh_level *now = &items[worst].levels[items[worst].level];
+        const uint64_t more = now[1].faces - now->faces;
+        aside[worst] = faces > 0 && shown + more > faces;
+        shown += aside[worst] ? 0 : more;
+        items[worst].level += !aside[worst];
+    }
+    free(aside);
+}
+
+TEST(plan_of_a_scene_goes_on_with_the_worst)
+{
+    enum { ITEMS = 60 };
+    pmesh_level l[LEVELS];
+    pmesh_plan_item items[ITEMS], plain[ITEMS];
+    uint32_t seed = 9;
+    make_levels(l);
+    for (int round = 0; round < 500; round++) {
+        const uint32_t count = 1 + shape_random(&seed, ITEMS);
+        const uint64_t faces =
+            round % 5 ? count * 100 + shape_random(&seed, 3000 * count) : 0;
+        const double pixels = shape_random(&seed, 30) / 10.0;
+        for (uint32_t i = 0; i < count; i++) {
+            items[i] = (pmesh_plan_item){ l, 1 + shape_random(&seed, LEVELS),
+                                          shape_random(&seed, 20) / 4.0, 77 };
+            if (shape_random(&seed, 20) == 0)
+                items[i].pixels_per_unit = NAN;
+            plain[i] = items[i];
+        }
+        pmesh_plan_scene(items, count, pixels, faces, 0);
+        plan_plainly(plain, count, pixels, faces);
+        for (uint32_t i = 0; i < count; i++)
+            CHECK(items[i].level == plain[i].level);
+    }
+}
+
+/* A minute, if every step looked at all items. */
+TEST(plan_of_a_scene_of_many_meshes_takes_no_time)
+{
+    enum { MANY = 100000 };
+    pmesh_level l[LEVELS];
+    pmesh_plan_item *items = calloc(MANY, sizeof *items);
+    make_levels(l);
+    for (uint32_t i = 0; i < MANY; i++)
+        items[i] = (pmesh_plan_item){ l, LEVELS, 1 + i % 1000, 0 };
+    const clock_t start = clock();
+    CHECK(pmesh_plan_scene(items, MANY, 0, 0, 0) == 0);
+    CHECK(clock() - start < CLOCKS_PER_SEC);
+    if (getenv("PMESH_FIGURES"))
+        printf("    %d items: %.3f s\n", MANY,
+               (double)(clock() - start) / CLOCKS_PER_SEC);
+    for (uint32_t i = 0; i < MANY; i++)
+        CHECK(items[i].level == LEVELS - 1);
+    free(items);
 }
