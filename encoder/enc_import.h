@@ -121,7 +121,7 @@ typedef struct enc_pairing {
  * Makes mesh->twin from mesh->vertex, positions and materials; faces that have
  * vertices, orientation and material of an earlier one are put into
  * `repeated` and stay without twins. A face is never paired with one over the
- * same three vertices.
+ * same three vertices. The mesh' pool helps.
  */
 pmesh_status enc_pair(enc_mesh *mesh, enc_pairing *pairing);
 
