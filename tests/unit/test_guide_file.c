@@ -103,13 +103,11 @@ TEST(guides_look_at_no_more_than_their_limit)
         vertices[3 * i] = trig_cos((double)i / MANY);
         vertices[3 * i + 1] = trig_sin((double)i / MANY);
     }
-    const clock_t start = clock();
     CHECK(read_points(&g, &mesh, places, 10, &error));
     guide_free(&g);
     CHECK(!read_points(&g, &mesh, places, MANY, &error));
     CHECK(strstr(error.what, "looks at more than 2^32 vertices") != NULL);
     guide_free(&g);
-    CHECK(clock() - start < 5 * CLOCKS_PER_SEC);
     free(places);
     free(vertices);
 }

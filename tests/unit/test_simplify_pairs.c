@@ -4,8 +4,10 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "format/alloc.h"
 #include "tests/unit/lods.h"
@@ -103,21 +105,30 @@ static lods *confetti(uint32_t count)
     return lods_make(xyz, 3 * (size_t)count, tri, count);
 }
 
+static void create(const pmesh_allocator *a, const lods *l, enc_lod *out)
+{
+    const uint32_t n = (uint32_t)l->in.vertex_count;
+    uint32_t *same = malloc(n * sizeof *same);
+
+    for (uint32_t v = 0; v < n; v++)
+        same[v] = v;
+    CHECK(enc_lod_create(a, l->tri, n / 3, NULL, n, same, same,
+                         (const double (*)[3])l->xyz, out) == PMESH_OK);
+    free(same);
+}
+
 TEST(threshold_finds_the_pairs_that_all_against_all_finds)
 {
     const pmesh_allocator a = pmesh_allocator_resolve((pmesh_allocator){ 0 });
     const double t = 0.06;
     lods *l = confetti(100);
     const uint32_t n = (uint32_t)l->in.vertex_count;
-    uint32_t *same = malloc(n * sizeof *same), count, next = 0, found = 0;
+    uint32_t count, next = 0, found = 0;
     uint32_t (*pairs)[2];
     size_t capacity;
     enc_lod lod;
 
-    for (uint32_t v = 0; v < n; v++)
-        same[v] = v;
-    CHECK(enc_lod_create(&a, l->tri, n / 3, NULL, n, same, same,
-                         (const double (*)[3])l->xyz, &lod) == PMESH_OK);
+    create(&a, l, &lod);
     CHECK(enc_lod_find_near(&lod, t, &pairs, &capacity, &count) == PMESH_OK);
     for (uint32_t u = 0; u < n; u++) {
         uint32_t want = 0, got = 0;
@@ -136,8 +147,39 @@ TEST(threshold_finds_the_pairs_that_all_against_all_finds)
     CHECK(next == count && found >= 50);
     pmesh_release(&a, pairs, capacity, sizeof *pairs);
     enc_lod_destroy(&lod);
-    free(same);
     lods_free(l);
+}
+
+/* Seconds for the pairs of so many triangles under a threshold that puts all
+ * vertices into one cell. */
+static double time_in_one_cell(uint32_t triangles)
+{
+    const pmesh_allocator a = pmesh_allocator_resolve((pmesh_allocator){ 0 });
+    lods *l = confetti(triangles);
+    uint32_t (*pairs)[2], count;
+    size_t capacity;
+    enc_lod lod;
+
+    create(&a, l, &lod);
+    const clock_t start = clock();
+    CHECK(enc_lod_find_near(&lod, 100, &pairs, &capacity, &count) == PMESH_OK);
+    const double seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
+    pmesh_release(&a, pairs, capacity, sizeof *pairs);
+    enc_lod_destroy(&lod);
+    lods_free(l);
+    return seconds;
+}
+
+/* Each vertex looks at a part of those behind it, but none at those before. */
+TEST(threshold_of_the_whole_model_takes_time_in_proportion)
+{
+    const double few = time_in_one_cell(3000);
+    const double many = time_in_one_cell(30000);
+
+    if (getenv("PMESH_FIGURES"))
+        printf("    9000 and 90000 vertices: %.3f and %.3f s (%.1fx)\n", few,
+               many, many / few);
+    CHECK(many < 20 * few + 0.05);
 }
 
 TEST(threshold_may_be_as_large_as_the_model)
