@@ -92,6 +92,25 @@ def factors(d):
         "roughnessFactor": 1e300, "baseColorFactor": [-1e39, 0, 0, 1]}}]
     d["meshes"][0]["primitives"][0]["material"] = 0
 
+# A strip of 4000 triangles, in 10,000 nodes.
+STRIP = b"".join(struct.pack("<3f", i // 2, i % 2, i * i % 7) for i in range(4002))
+
+def nodes(d):
+    d["accessors"][0].update(bufferView=2, count=4002)
+    d["bufferViews"].append({"buffer": 0, "byteOffset": 44,
+                             "byteLength": len(STRIP)})
+    d["meshes"] = [{"primitives": [{"attributes": {"POSITION": 0},
+                                    "mode": 5}]}]
+    d["nodes"] = [{"mesh": 0}] * 10000
+    d["scenes"] = [{"nodes": list(range(10000))}]
+
+# Numbers of which conversions to whole ones are undefined, or others.
+def numbers(d):
+    d["skins"] = [{"joints": [1e300, -1, 0.5, 2**53 + 2, 1]}]
+    d["nodes"] = [{"mesh": 0, "skin": 0}] + [
+        {"mesh": 0, "skin": bad} for bad in (1e300, -1, -1e300, 2**64)]
+    d["extensions"] = {"X": {"bad": [1e300, -1, 2**63, 2**64, None]}}
+
 open("long.png", "wb").write(LONG)
 write("wide.glb", wide)
 write("wide-enough.glb", wide_enough)
@@ -103,6 +122,12 @@ write("side-images.glb", side_images)
 write("side-buffers.glb", side_buffers)
 write("side-twice.glb", side_twice)
 write("factors.glb", factors)
+write("nodes.glb", nodes, STRIP)
+write("numbers.glb", numbers)
+for n, bad in enumerate((1e300, -1, 0.5, 2**32, 2**53 + 2, 2**64, None)):
+    write("mesh-%d.glb" % n, lambda d: d["nodes"][1].update(mesh=bad))
+    write("bind-%d.glb" % n, lambda d: d.update(
+        skins=[{"joints": [0], "inverseBindMatrices": bad}]))
 PY
 python3 hostile.py
 
@@ -125,3 +150,16 @@ check 'factors beyond floats' 0 bake factors.glb -q -o x.pmesh
 check 'as OBJ' 0 extract x.pmesh -q -o x.obj
 ok 'are the largest there are' grep -q '^Pr 3.4028235e+38$' x.mtl
 ok 'and the least' grep -q '^Kd -3.4028235e+38 0 0$' x.mtl
+
+check 'a mesh in many nodes' 0 bake nodes.glb -q -o x.pmesh
+check 'as glTF' 0 extract x.pmesh -q -o x.glb
+check 'but not as many of them' 1 extract x.pmesh -q -o x.obj
+ok 'says why' err 'the scene expands to more than'
+
+check 'joints that are none' 0 bake numbers.glb -q -o x.pmesh
+for kind in mesh bind; do
+    for n in 0 1 2 3 4 5 6; do
+        check "a number that is none for a $kind, $n" 3 bake $kind-$n.glb \
+            -o x.pmesh
+    done
+done
