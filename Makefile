@@ -16,7 +16,8 @@ version := $(shell awk '/define PMESH_VERSION_/ { printf "%s%s", dot, $$3; \
 
 opt_release := -O3 -DNDEBUG
 opt_debug := -O0 -g
-opt_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all
+opt_sanitize := -O1 -g -fsanitize=address,undefined,float-cast-overflow \
+  -fno-sanitize-recover=all
 # These need clang: see fuzz, msan and coverage below. Comparisons of parsers are
 # worth tracing; in the codec they are arithmetic and take half of the time.
 no_cmp := -fno-sanitize-coverage=trace-cmp
