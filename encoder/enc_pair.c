@@ -429,14 +429,15 @@ static bool pair_buckets(pairer *pair)
     const bool shared = pair->mesh->pool && pair->largest <= LARGEST_SHARED;
     const size_t workers = shared ? enc_pool_workers(pair->mesh->pool) : 1;
     const size_t keys = 2 * workers * pair->largest;
-    bool good;
+    bool good = true;
 
     pair->key = pmesh_alloc(a, keys, sizeof *pair->key);
     if (!pair->key)
         return false;
     pair->other_key = pair->key + pair->largest;
-    good = !shared || pair_shared(pair);
-    if (!shared)
+    if (shared)
+        good = pair_shared(pair);
+    else
         pair_serially(pair);
     pmesh_release(a, pair->key, keys, sizeof *pair->key);
     return good;
