@@ -147,7 +147,8 @@ static int put_together(const scene_parts *parts, const asset_bytes *streams,
         const pmesh_scene_input input = {
             .meshes = meshes, .mesh_count = parts->mesh_count,
             .document = { parts->document.data, parts->document.size },
-            .document_form = PMESH_DOCUMENT_ZLIB,
+            .document_form = parts->packed ? PMESH_DOCUMENT_ZLIB
+                                           : PMESH_DOCUMENT_PLAIN,
             .resources = resources, .resource_count = parts->resource_count,
             .early_count = parts->early_count,
             .resource_offsets = offsets

@@ -34,6 +34,7 @@ extern "C" {
 #define GLTF_MAX_DEPTH 64 /* of nested JSON values */
 #define GLTF_MAX_MEMBERS 4096 /* of a JSON object */
 #define GLTF_MAX_FACES ((uint64_t)1 << 27)
+#define GLTF_MAX_DOCUMENT ((uint64_t)1 << 28) /* of a scene, unpacked */
 
 /* Slots of a primitive: NORMAL, TEXCOORD_0..7, COLOR_0..7. */
 #define GLTF_SETS 8
@@ -49,6 +50,7 @@ int gltf_slot(const char *semantic);
 typedef struct gltf_source {
     const char *json;
     size_t json_size;
+    uint64_t json_values; /* in the text, at most */
     const uint8_t *bin; /* GLB's BIN chunk, or NULL */
     size_t bin_size;
     size_t file_size;
@@ -89,6 +91,10 @@ typedef struct gltf_budget {
 } gltf_budget;
 
 gltf_budget gltf_budget_for(uint64_t file_size);
+
+/* Whether a document of a scene, opened, may be stored in so few bytes: those
+ * who read it expand it to its text and 64 bytes a value. */
+bool gltf_fits_stored(const gltf_source *document, uint64_t stored);
 
 /* Takes count * size bytes; false (and nothing taken) if they are not left. */
 bool gltf_spend(gltf_budget *budget, uint64_t count, uint64_t size);

@@ -22,6 +22,15 @@ bool gltf_spend(gltf_budget *budget, uint64_t count, uint64_t size)
     return true;
 }
 
+bool gltf_fits_stored(const gltf_source *document, uint64_t stored)
+{
+    gltf_budget budget = gltf_budget_for(stored);
+
+    return document->file_size <= GLTF_MAX_DOCUMENT &&
+           gltf_spend(&budget, document->file_size, 1) &&
+           gltf_spend(&budget, document->json_values, 64);
+}
+
 static uint32_t type_size(uint32_t type)
 {
     switch (type) {

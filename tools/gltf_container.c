@@ -24,15 +24,20 @@ static bool fail_at(asset_error *error, size_t offset, const char *what)
 
 /* Whether the text nests deeper than parsers with a stack can bear, or has an
  * object with so many members that looking for each takes too long. Strings are
- * skipped; the text need not be valid JSON. */
-static bool fits_parsers(const char *text, size_t size, asset_error *error)
+ * skipped; the text need not be valid JSON. Counts values: one behind each comma
+ * and one at the start of each list or object, unless that is empty. */
+static bool fits_parsers(gltf_source *source, asset_error *error)
 {
+    const char *text = source->json;
+    const size_t size = source->json_size;
     size_t room[GLTF_MAX_DEPTH + 1]; /* for members, by depth */
     size_t depth = 0;
     bool quoted = false;
 
+    source->json_values = 1;
     for (size_t i = 0; i < size; i++) {
         const char c = text[i];
+        source->json_values += !quoted && (c == ',' || c == '[' || c == '{');
         if (quoted) {
             if (c == '\\')
                 i++;
@@ -142,5 +147,5 @@ bool gltf_open(const uint8_t *data, size_t size, gltf_source *out,
         start++;
     if (start == out->json_size || out->json[start] != '{')
         return asset_fail(error, "", "neither a GLB nor a JSON object");
-    return fits_parsers(out->json, out->json_size, error);
+    return fits_parsers(out, error);
 }

@@ -205,6 +205,25 @@ void take_meshes(const gltf_source &source, const gltf_model &model,
     note_kept(in, &out->notes);
 }
 
+/* Packed, unless it packs so well that none would dare to unpack it. */
+void take_document(const std::string &text, scene_parts *out)
+{
+    gltf_source source = {};
+    asset unused = {};
+    asset_error error = {};
+
+    if (!pack_zlib(text.data(), text.size(), &out->document))
+        throw std::bad_alloc();
+    if (!gltf_open(reinterpret_cast<const uint8_t *>(text.data()), text.size(),
+                   &source, &unused, &error))
+        fail(error);
+    out->packed = gltf_fits_stored(&source, out->document.size);
+    if (!out->packed) {
+        out->document.size = 0;
+        put(&out->document, text.data(), text.size());
+    }
+}
+
 void read(const gltf_source &source, holder *held, scene_parts *out)
 {
     gltf_budget budget = gltf_budget_for(source.file_size);
@@ -225,9 +244,7 @@ void read(const gltf_source &source, holder *held, scene_parts *out)
     take_meshes(source, model, sides, budget, out, &streams);
     const gltf_parts parts =
         gltf_take_apart(source, model, streams, sides, budget, &out->notes);
-    if (!pack_zlib(parts.document.data(), parts.document.size(),
-                   &out->document))
-        throw std::bad_alloc();
+    take_document(parts.document, out);
     out->resources = static_cast<asset_bytes *>(
         calloc(parts.resources.size() + 1, sizeof *out->resources));
     if (!out->resources)

@@ -21,7 +21,8 @@ typedef struct scene_mesh {
 typedef struct scene_parts {
     scene_mesh *meshes;
     size_t mesh_count;
-    asset_bytes document; /* packed, see pack.h */
+    asset_bytes document;
+    bool packed; /* that is; see pack.h */
     asset_bytes *resources;
     size_t resource_count, early_count;
     asset notes; /* its warnings: what was left out, and what is not refined */

@@ -16,7 +16,6 @@
 
 namespace {
 
-enum { MAX_DOCUMENT = 1 << 28 };
 enum { TARGET_VERTICES = 34962, TARGET_INDICES = 34963 };
 #define GLTF_MESHOPT "EXT_meshopt_compression"
 
@@ -64,7 +63,11 @@ static void read_document(const pmesh_scene *scene, asset_bytes *plain)
     pmesh_scene_get_header(scene, &header);
     if (header.document_form == PMESH_DOCUMENT_PLAIN)
         asset_put(plain, text.data, size);
-    else if (!unpack_zlib(text.data, size, MAX_DOCUMENT, plain))
+    else if (!unpack_zlib(text.data, size,
+                          static_cast<size_t>(
+                              std::min(GLTF_MAX_DOCUMENT,
+                                       gltf_budget_for(size).left)),
+                          plain))
         throw std::runtime_error("the document cannot be unpacked");
 }
 
@@ -81,6 +84,9 @@ gltf_document scene_document(const pmesh_scene *scene)
     if (!gltf_open(plain.data, plain.size, &source, &unused, &error))
         throw std::runtime_error(std::string("the document is no glTF: ") +
                                  error.what);
+    if (!gltf_fits_stored(&source, pmesh_scene_document(scene).size))
+        throw std::runtime_error(
+            "the document unpacks to more than its size allows");
     return gltf_document::parse(source.json, source.json + source.json_size);
 }
 

@@ -104,6 +104,10 @@ def nodes(d):
     d["nodes"] = [{"mesh": 0}] * 10000
     d["scenes"] = [{"nodes": list(range(10000))}]
 
+# A document that packs to next to nothing.
+def many(d):
+    d["nodes"] += [{}] * 600000
+
 # Numbers of which conversions to whole ones are undefined, or others.
 def numbers(d):
     d["skins"] = [{"joints": [1e300, -1, 0.5, 2**53 + 2, 1]}]
@@ -124,6 +128,7 @@ write("side-twice.glb", side_twice)
 write("factors.glb", factors)
 write("nodes.glb", nodes, STRIP)
 write("numbers.glb", numbers)
+write("many.glb", many)
 for n, bad in enumerate((1e300, -1, 0.5, 2**32, 2**53 + 2, 2**64, None)):
     write("mesh-%d.glb" % n, lambda d: d["nodes"][1].update(mesh=bad))
     write("bind-%d.glb" % n, lambda d: d.update(
@@ -155,6 +160,10 @@ check 'a mesh in many nodes' 0 bake nodes.glb -q -o x.pmesh
 check 'as glTF' 0 extract x.pmesh -q -o x.glb
 check 'but not as many of them' 1 extract x.pmesh -q -o x.obj
 ok 'says why' err 'the scene expands to more than'
+
+check 'a document that packs too well' 0 bake many.glb -q -o x.pmesh
+ok 'is stored as it is' test "$(wc -c <x.pmesh)" -gt 1800000
+check 'and read' 0 extract x.pmesh -q -o x.glb
 
 check 'joints that are none' 0 bake numbers.glb -q -o x.pmesh
 for kind in mesh bind; do

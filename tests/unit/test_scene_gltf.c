@@ -401,6 +401,30 @@ TEST(packed_bytes_come_back)
     }
 }
 
+/* A small file that unpacks to very many values, or to very much text. */
+TEST(documents_that_unpack_to_too_much_are_refused)
+{
+    static const char *const parts[] = { "[],", "                " };
+    static const char start[] = "{" ASSET ",\"extras\":[", end[] = "0]}";
+    const size_t counts[] = { 1 << 20, (112 << 20) / 16 };
+    for (int kind = 0; kind < 2; kind++) {
+        asset_bytes text = { 0 }, out = { 0 };
+        asset notes = { 0 };
+        asset_error error = { "", "" };
+        asset_put(&text, start, strlen(start));
+        for (size_t i = 0; i < counts[kind]; i++)
+            asset_put(&text, parts[kind], strlen(parts[kind]));
+        asset_put(&text, end, strlen(end));
+        pmesh_scene *scene = scene_packed(SHAPE_TORUS, 8, &text);
+        CHECK(!scene_write(scene, (scene_style){ .glb = true }, &out, &notes,
+                           &error));
+        CHECK(strstr(error.what, kind ? "cannot be unpacked"
+                                      : "unpacks to more than"));
+        asset_bytes_free(&out);
+        pmesh_scene_destroy(scene);
+    }
+}
+
 TEST(packed_bytes_that_are_damaged_or_cut_off_are_refused)
 {
     static const char text[] = "{\"asset\": {\"version\": \"2.0\"}}";

@@ -5,8 +5,10 @@ import { execFileSync } from "node:child_process";
 import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { deflateSync } from "node:zlib";
 import { PmeshError, Source } from "pmesh";
 import { Scene, SceneDecoder, openScene } from "pmesh/scene";
+import { unpack } from "../pmesh/unpack.js";
 import { serve } from "./server.mjs";
 
 const { PMESH, PMESH_GOLDEN, PMESH_ZOO } = process.env;
@@ -102,6 +104,14 @@ test("the document is glTF, and resources come whole", async () => {
         for (let i = 0; i < scene.header.resourceCount; i++)
             assert.ok(scene.resource(i) instanceof Uint8Array);
     }
+});
+
+test("a document unpacks to what its size allows", async () => {
+    const text = "a few words";
+    assert.equal(await unpack(deflateSync(text)), text);
+    const much = deflateSync(Buffer.alloc(100 << 20, " "));
+    await assert.rejects(unpack(much), { name: "PmeshError", code: "limit" });
+    await assert.rejects(unpack(deflateSync(text).subarray(0, 9)));
 });
 
 test("is shown before the file has arrived", async () => {

@@ -13,6 +13,7 @@ import { Loading } from "./load.js";
 import { Instance, compile } from "./module.js";
 import { compressed } from "./scene-wasm.js";
 import { Source } from "./source.js";
+import { unpack } from "./unpack.js";
 
 const ZLIB = 1;
 
@@ -145,11 +146,9 @@ export class SceneDecoder {
     // The document's text (of glTF: its JSON), or null until all of it is there.
     async document() {
         const bytes = this.#bytes(-1);
-        if (!bytes || !this.#header.documentPacked)
-            return bytes && new TextDecoder().decode(bytes);
-        const stream = new Blob([bytes]).stream()
-            .pipeThrough(new DecompressionStream("deflate"));
-        return new Response(stream).text();
+        if (bytes && this.#header.documentPacked)
+            return unpack(bytes);
+        return bytes && new TextDecoder().decode(bytes);
     }
 
     // A copy of a resource's bytes, or null until all of them are there.
