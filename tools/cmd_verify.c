@@ -45,7 +45,7 @@ static const args_command command = {
 typedef struct verdict {
     int code;
     asset_error error; /* unless CMD_DONE */
-    uint64_t bytes;
+    uint64_t bytes, behind; /* its end, which are ignored */
     bool has_header;
     pmesh_header header;
     pmesh_progress_state progress;
@@ -109,6 +109,8 @@ static void judge(const char *path, verdict *v)
         judge_scene(&data, v);
     else
         judge_mesh(&data, v);
+    if (v->code == CMD_DONE)
+        v->behind = data.size - v->progress.bytes;
     file_free(&data);
 }
 
@@ -124,6 +126,8 @@ static void print_verdict(const char *path, const verdict *v)
                v->header.exact_bytes > 0 ? ", exact positions" : "");
         if (v->is_scene)
             printf(", a scene of %" PRIu32 " meshes", v->meshes);
+        if (v->behind > 0)
+            printf(", and %" PRIu64 " bytes behind its end", v->behind);
         putchar('\n');
     } else if (v->progress.levels > 0) {
         report_error(name, v->error.where,

@@ -44,6 +44,9 @@ check 'verify two good files' 0 verify t.pmesh u.pmesh
 ok 'verify prints a line for each' test "$(wc -l <"$work/out")" -eq 2
 check 'verify -q' 0 verify -q t.pmesh
 ok 'verify -q is quiet' test ! -s "$work/out"
+cp t.pmesh more.pmesh && printf abc >>more.pmesh
+check 'verify a file with more behind it' 0 verify more.pmesh
+ok 'says so' grep -q 'and 3 bytes behind its end' "$work/out"
 check 'verify a cut file' 4 verify cut.pmesh
 ok 'it names bytes and level' err 'cut off after .*last good level'
 check 'verify nothing' 4 verify empty.pmesh

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * damage FLIPS FILE... - gives the decoder every prefix of each file, and the
- * file with every bit flipped, one at a time; of a file with more than FLIPS
- * bits so many, evenly spread (0: all). Promised, and counted:
+ * damage FLIPS EDITS FILE... - gives the decoder every prefix of each file, the
+ * file with every bit flipped, one at a time (of a file with more than FLIPS
+ * bits so many, evenly spread; 0: all), and EDITS times otherwise: words of it
+ * are extreme, bytes missing, added, or from elsewhere in it. Promised, and
+ * counted:
  *
- *   a flipped bit is noticed; a prefix asks for more
+ *   a flipped bit and an edit are noticed; a prefix asks for more
  *   what is shown then is what the good file shows at as many vertices (levels
  *   of scattered faces have many states of as many faces), no more of it than
  *   before the damage, and never fewer faces for a longer prefix
@@ -21,7 +23,8 @@
 #include "tests/unit/shapes.h"
 
 typedef struct tally {
-    uint64_t bytes, prefixes, shown, flips, noticed, still_shown, wrong;
+    uint64_t bytes, prefixes, shown, flips, noticed, still_shown;
+    uint64_t edits, edits_noticed, wrong;
     uint64_t first; /* the shortest prefix that shows a mesh */
 } tally;
 
@@ -157,6 +160,86 @@ static void flip_everywhere(const good *g, tally *t, uint64_t most)
     }
 }
 
+/* ---- edits --------------------------------------------------------------- */
+
+enum { MOST_ADDED = 64 };
+
+static uint32_t draw(uint64_t *seed, size_t below)
+{
+    *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)((*seed >> 33) % below);
+}
+
+/* Where something is done: every other time where headers are. */
+static size_t draw_place(uint64_t *seed, size_t size)
+{
+    const size_t near = size < 200 ? size : 200;
+    return draw(seed, draw(seed, 2) ? near : size);
+}
+
+static size_t put_word(uint64_t *seed, uint8_t *data, size_t size)
+{
+    static const uint32_t words[] = { 0, 1, 0x7f, 0x80, 0xff, 0xffff, 0x10000,
+                                      0x7fffffff, 0x80000000, 0xfffffffe,
+                                      0xffffffff };
+    const uint32_t word = words[draw(seed, sizeof words / sizeof *words)];
+    const size_t at = draw_place(seed, size);
+    for (size_t i = 0; i < 4 && at + i < size; i++)
+        data[at + i] = (uint8_t)(word >> 8 * i);
+    return size;
+}
+
+static size_t remove_bytes(uint64_t *seed, uint8_t *data, size_t size)
+{
+    const size_t at = draw_place(seed, size);
+    const size_t left = size - at;
+    const size_t n = 1 + draw(seed, left < 64 ? left : 64);
+    memmove(data + at, data + at + n, left - n);
+    return size - n;
+}
+
+static size_t add_bytes(uint64_t *seed, uint8_t *data, size_t size)
+{
+    const size_t at = draw(seed, 4) ? draw_place(seed, size) : size;
+    const size_t n = 1 + draw(seed, MOST_ADDED);
+    const bool noise = draw(seed, 2);
+    memmove(data + at + n, data + at, size - at);
+    for (size_t i = 0; i < n; i++)
+        data[at + i] = noise ? (uint8_t)draw(seed, 256) : 0;
+    return size + n;
+}
+
+static size_t splice_bytes(uint64_t *seed, uint8_t *data, size_t size)
+{
+    const size_t from = draw(seed, size), to = draw(seed, size);
+    const size_t room = size - (from > to ? from : to);
+    memmove(data + to, data + from, 1 + draw(seed, room));
+    return size;
+}
+
+static void edit(const good *g, tally *t, uint64_t times)
+{
+    static size_t (*const kinds[])(uint64_t *, uint8_t *, size_t) = {
+        put_word, remove_bytes, add_bytes, splice_bytes
+    };
+    const bool scene = is_scene(g);
+    uint64_t seed = g->size;
+    good bad = *g;
+    bad.data = malloc(g->size + MOST_ADDED);
+    while (bad.data && t->edits < times) {
+        const uint64_t wrong = t->wrong;
+        memcpy(bad.data, g->data, g->size);
+        bad.size = kinds[draw(&seed, 4)](&seed, bad.data, g->size);
+        if (bad.size >= g->size && memcmp(bad.data, g->data, g->size) == 0)
+            continue; /* what follows a file is ignored (SPEC 5.2) */
+        (scene ? try_scene : try_mesh)(&bad, bad.size, t, t->edits,
+                                       "an edit that passes");
+        t->edits_noticed += t->wrong == wrong;
+        t->edits++;
+    }
+    free(bad.data);
+}
+
 static void cut_scene(const good *g, tally *t)
 {
     const size_t step = g->size / 2000 + 1; /* scenes are large */
@@ -184,9 +267,10 @@ static void print(const char *name, const tally *t)
     printf("%s: %" PRIu64 " bytes; %" PRIu64 " prefixes, %" PRIu64
            " show a mesh, from byte %" PRIu64 " on; %" PRIu64
            " bits flipped, %" PRIu64 " noticed, %" PRIu64
-           " still show a coarser mesh; %" PRIu64 " promises broken\n",
+           " still show a coarser mesh; %" PRIu64 " edits, %" PRIu64
+           " noticed; %" PRIu64 " promises broken\n",
            name, t->bytes, t->prefixes, t->shown, t->first, t->flips,
-           t->noticed, t->still_shown, t->wrong);
+           t->noticed, t->still_shown, t->edits, t->edits_noticed, t->wrong);
 }
 
 static void add(tally *sum, const tally *t)
@@ -197,6 +281,8 @@ static void add(tally *sum, const tally *t)
     sum->flips += t->flips;
     sum->noticed += t->noticed;
     sum->still_shown += t->still_shown;
+    sum->edits += t->edits;
+    sum->edits_noticed += t->edits_noticed;
     sum->wrong += t->wrong;
     sum->first = sum->first > t->first ? sum->first : t->first;
 }
@@ -204,11 +290,11 @@ static void add(tally *sum, const tally *t)
 int main(int argc, char **argv)
 {
     tally sum = { 0 };
-    if (argc < 3) {
-        fprintf(stderr, "usage: damage FLIPS FILE...\n");
+    if (argc < 4) {
+        fprintf(stderr, "usage: damage FLIPS EDITS FILE...\n");
         return 2;
     }
-    for (int i = 2; i < argc; i++) {
+    for (int i = 3; i < argc; i++) {
         good g;
         tally t = { 0 };
         if (!read_file(argv[i], &g)) {
@@ -221,6 +307,7 @@ int main(int argc, char **argv)
         else
             cut_everywhere(&g, &t);
         flip_everywhere(&g, &t, strtoull(argv[1], NULL, 10));
+        edit(&g, &t, strtoull(argv[2], NULL, 10));
         print(argv[i], &t);
         add(&sum, &t);
         free(g.data);

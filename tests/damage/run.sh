@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # Usage: PMESH=build/release/pmesh tests/damage/run.sh
-#        LONG=1: the golden files and meshes baked in other ways; 500,000 flips
+#        LONG=1: the golden files and meshes baked in other ways; 500,000 flips,
+#        100,000 edits
 #
-# Every prefix and every flipped bit of small files, see damage.c.
+# Every prefix and every flipped bit of small files, and edits: see damage.c.
 set -u
 build=$(dirname "$PMESH")
 suite=damage
@@ -34,7 +35,7 @@ END
 
 every_promise_is_kept() {
     # shellcheck disable=SC2086 # words on purpose
-    "$build/damage" "$1" $(printf '%s.pmesh ' $files)
+    "$build/damage" 0 500 $(printf '%s.pmesh ' $files)
 }
 
 # One line at the end: what all files together came to.
@@ -42,13 +43,16 @@ tell() {
     "$build/damage" "$@" >"$dir/told"
     status=$?
     cat "$dir/told"
-    flips=$((flips + $(sed -n \
-        's/^all: .*; \([0-9]*\) bits flipped.*/\1/p' "$dir/told")))
+    for word in flips edits; do
+        sum=$(sed -n 's/ bits flipped/ flips/
+            s/^all: .*; \([0-9]*\) '$word'.*/\1/p' "$dir/told")
+        eval "$word=\$(($word + sum))"
+    done
     return $status
 }
 
 if [ -n "${LONG-}" ]; then
-    flips=0
+    flips=0 edits=0
     try bake_all
     for file in $files $(ls $golden/*.pmesh | sed 's/\.pmesh$//'); do
         echo "$file.pmesh"
@@ -56,14 +60,15 @@ if [ -n "${LONG-}" ]; then
     small=$(xargs -I{} find {} -size -11b <"$dir/list")
     large=$(xargs -I{} find {} -size +10b <"$dir/list")
     # shellcheck disable=SC2086 # words on purpose
-    try 'small files, all bits' tell 0 $small
+    try 'small files, all bits' tell 0 3000 $small
     cat "$dir/told"
     # shellcheck disable=SC2086
-    try 'larger files, 20,000 bits each' tell 20000 $large
+    try 'larger files, 20,000 bits each' tell 20000 3000 $large
     cat "$dir/told"
-    echo "$flips bits flipped"
+    echo "$flips bits flipped, $edits edits"
     try '500,000 flips' test "$flips" -ge 500000
+    try '100,000 edits' test "$edits" -ge 100000
 else
-    try 'every promise is kept' every_promise_is_kept 0
+    try 'every promise is kept' every_promise_is_kept
 fi
 summary
