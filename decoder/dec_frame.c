@@ -45,7 +45,8 @@ static pmesh_status take_start(dec_frame *f, const dec_frame_owner *owner)
     if (open || in.overrun)
         return dec_frame_fail(f, PMESH_E_CORRUPT,
                               "SPEC 5.2: a chunk's size is out of range");
-    f->crc = pmesh_crc32c(0, f->start, f->start_size);
+    const bool chained = pmesh_chunk_is_chained(f->type);
+    f->crc = pmesh_crc32c(chained ? f->chain : 0, f->start, f->start_size);
     f->start_size = 0;
     f->size = size;
     f->received = 0;
@@ -54,20 +55,16 @@ static pmesh_status take_start(dec_frame *f, const dec_frame_owner *owner)
     return owner->begin(owner->self);
 }
 
-static bool is_hashed(uint8_t type)
-{
-    return type < PMESH_CHUNK_SKIPPABLE && type != PMESH_CHUNK_HEADER &&
-           type != PMESH_CHUNK_SCENE && type != PMESH_CHUNK_END;
-}
-
 static pmesh_status finish_chunk(dec_frame *f, const dec_frame_owner *owner)
 {
     pmesh_cursor in = pmesh_cursor_make(f->tail, sizeof f->tail);
     if (pmesh_get_u32(&in) != f->crc)
         return dec_frame_fail(f, PMESH_E_CHECKSUM,
                               "SPEC 5.2: a chunk's checksum does not match");
-    if (is_hashed(f->type))
+    if (pmesh_chunk_is_chained(f->type) && f->type != PMESH_CHUNK_END) {
         f->hash = pmesh_hash_crc(f->hash, f->crc);
+        f->chain = f->crc;
+    }
     if (f->type < PMESH_CHUNK_SKIPPABLE) {
         const pmesh_status status = owner->finish(owner->self);
         if (status != PMESH_OK)

@@ -25,6 +25,7 @@ typedef struct dec_frame {
     uint64_t chunk_offset; /* where the current chunk starts */
     uint64_t whole;        /* bytes up to the last complete chunk */
     uint64_t hash;         /* of all critical chunks but header and end */
+    uint32_t chain;        /* checksum of the last of these */
     uint8_t start[16];     /* signature, or a chunk's type and size */
     uint32_t start_size;
     uint8_t type;

@@ -38,18 +38,21 @@ static size_t start_of(const enc_piece *p, uint8_t out[MAX_START])
     return start.size;
 }
 
-/* Checksums, the hash of all, and where rows end. */
+/* Checksums, which go on from piece to piece, the hash of all, and where rows
+ * end. */
 static void measure(scene_file *f)
 {
     uint64_t bytes = 0;
+    uint32_t crc = 0;
 
     f->head.content_hash = PMESH_HASH_START;
     for (size_t i = 0; i < f->mux.piece_count; i++) {
         enc_piece *p = &f->mux.piece[i];
         uint8_t start[MAX_START];
         const size_t n = start_of(p, start);
-        p->crc = pmesh_crc32c(pmesh_crc32c(0, start, n), p->data, p->size);
-        f->head.content_hash = pmesh_hash_crc(f->head.content_hash, p->crc);
+        crc = pmesh_crc32c(pmesh_crc32c(crc, start, n), p->data, p->size);
+        p->crc = crc;
+        f->head.content_hash = pmesh_hash_crc(f->head.content_hash, crc);
         bytes += n + p->size + PMESH_CRC_SIZE;
         p->row.bytes = bytes;
         if (p->size + MAX_START > f->head.chunk_size)
@@ -114,17 +117,17 @@ static bool put_chunk(pmesh_write write, void *user,
            put(write, user, report, tail, sizeof tail);
 }
 
-/* A chunk that is no part. */
+/* A chunk that is no part; its checksum goes on from `before`. */
 static bool put_whole(pmesh_write write, void *user,
-                      pmesh_scene_report *report, uint8_t type,
-                      const uint8_t *data, size_t size)
+                      pmesh_scene_report *report, uint32_t before,
+                      uint8_t type, const uint8_t *data, size_t size)
 {
     uint8_t start[MAX_START];
     pmesh_writer out = { start, 0, sizeof start, false };
     pmesh_put(&out, type, 1);
     pmesh_put_varint(&out, size);
     const uint32_t crc =
-        pmesh_crc32c(pmesh_crc32c(0, start, out.size), data, size);
+        pmesh_crc32c(pmesh_crc32c(before, start, out.size), data, size);
     return put_chunk(write, user, report, start, out.size, data, size, crc);
 }
 
@@ -155,7 +158,8 @@ static pmesh_status write_file(scene_file *f, pmesh_write write, void *user,
 
     bool good =
         put(write, user, report, PMESH_SIGNATURE, PMESH_SIGNATURE_SIZE) &&
-        put_whole(write, user, report, PMESH_CHUNK_SCENE, f->payload, out.size);
+        put_whole(write, user, report, 0, PMESH_CHUNK_SCENE, f->payload,
+                  out.size);
     report->level_count = f->head.level_count;
     for (uint32_t i = 0; i < f->head.level_count; i++) {
         const pmesh_scene_row *row = &f->head.levels[i];
@@ -166,7 +170,9 @@ static pmesh_status write_file(scene_file *f, pmesh_write write, void *user,
     for (size_t i = 0; good && i < f->mux.piece_count; i++)
         good = put_piece(f, write, user, report, &f->mux.piece[i]);
     good = good &&
-           put_whole(write, user, report, PMESH_CHUNK_END, f->payload, 0);
+           put_whole(write, user, report,
+                     f->mux.piece[f->mux.piece_count - 1].crc, PMESH_CHUNK_END,
+                     f->payload, 0);
     report->faces = f->mux.now.faces;
     report->vertices = f->mux.now.vertices;
     report->bytes_header = report->bytes - report->bytes_document -

@@ -9,7 +9,8 @@ typedef struct chunk {
     uint8_t type;
     const uint8_t *payload;
     uint32_t size;
-    size_t end; /* offset behind the checksum */
+    uint32_t crc; /* as stored */
+    size_t end;   /* offset behind the checksum */
 } chunk;
 
 /* The chunk at `at`; NEED_DATA if the file ends within it. */
@@ -23,19 +24,30 @@ static pmesh_status read_chunk(const enc_split *s, size_t at, chunk *out)
         return PMESH_NEED_DATA;
     out->payload = in.next;
     in.next += out->size;
-    const uint32_t crc =
-        pmesh_crc32c(0, s->data + at, (size_t)(in.next - (s->data + at)));
-    const uint32_t stored = pmesh_get_u32(&in);
+    out->crc = pmesh_get_u32(&in);
     out->end = (size_t)(in.next - s->data);
-    if (in.overrun)
-        return PMESH_NEED_DATA;
-    return stored == crc ? PMESH_OK : PMESH_E_CHECKSUM;
+    return in.overrun ? PMESH_NEED_DATA : PMESH_OK;
+}
+
+/* Whether its checksum is right; `chain` is that of the last which goes on. */
+static pmesh_status check(const enc_split *s, size_t at, const chunk *c,
+                          uint32_t *chain)
+{
+    const bool chained = pmesh_chunk_is_chained(c->type);
+    const uint32_t crc = pmesh_crc32c(chained ? *chain : 0, s->data + at,
+                                      c->end - PMESH_CRC_SIZE - at);
+    if (chained)
+        *chain = crc;
+    return crc == c->crc ? PMESH_OK : PMESH_E_CHECKSUM;
 }
 
 static pmesh_status read_header(enc_split *s, size_t at, chunk *c)
 {
     const char *rule;
+    uint32_t unused = 0;
     pmesh_status status = read_chunk(s, at, c);
+    if (status == PMESH_OK)
+        status = check(s, at, c, &unused);
     if (status != PMESH_OK)
         return status;
     if (c->type != PMESH_CHUNK_HEADER)
@@ -47,6 +59,7 @@ static pmesh_status read_header(enc_split *s, size_t at, chunk *c)
 pmesh_status enc_split_open(enc_split *s, const void *data, size_t size)
 {
     chunk c;
+    uint32_t chain = 0;
 
     *s = (enc_split){ .data = data, .size = size };
     if (size < PMESH_SIGNATURE_SIZE ||
@@ -54,8 +67,12 @@ pmesh_status enc_split_open(enc_split *s, const void *data, size_t size)
         return PMESH_E_MAGIC;
     pmesh_status status = read_header(s, PMESH_SIGNATURE_SIZE, &c);
     s->header_end = c.end;
-    while (status == PMESH_OK && c.type != PMESH_CHUNK_END)
-        status = read_chunk(s, c.end, &c);
+    while (status == PMESH_OK && c.type != PMESH_CHUNK_END) {
+        const size_t at = c.end;
+        status = read_chunk(s, at, &c);
+        if (status == PMESH_OK)
+            status = check(s, at, &c, &chain);
+    }
     if (status == PMESH_OK)
         s->size = c.end; /* bytes behind the end mean nothing */
     return status;

@@ -39,13 +39,13 @@ static bool reserve(enc_stream *s, size_t more)
     return true;
 }
 
-/* Type and size; returns the CRC of the whole chunk. */
-static uint32_t frame(pmesh_writer *start, uint8_t type,
+/* Type and size; returns the CRC that goes on with the whole chunk. */
+static uint32_t frame(pmesh_writer *start, uint32_t crc, uint8_t type,
                       const uint8_t *payload, uint32_t size)
 {
     pmesh_put(start, type, 1);
     pmesh_put_varint(start, size);
-    return pmesh_crc32c(pmesh_crc32c(0, start->data, start->size), payload,
+    return pmesh_crc32c(pmesh_crc32c(crc, start->data, start->size), payload,
                         size);
 }
 
@@ -55,17 +55,17 @@ void enc_stream_chunk(enc_stream *s, uint8_t type, const uint8_t *payload,
     if (s->failed || !reserve(s, (size_t)size + MAX_START + PMESH_CRC_SIZE))
         return;
     pmesh_writer out = { s->data + s->size, 0, MAX_START, false };
-    const uint32_t crc = frame(&out, type, payload, size);
+    s->crc = frame(&out, s->crc, type, payload, size);
     s->size += out.size;
     if (size)
         memcpy(s->data + s->size, payload, size);
     s->size += size;
     out = (pmesh_writer){ s->data + s->size, 0, PMESH_CRC_SIZE, false };
-    pmesh_put(&out, crc, PMESH_CRC_SIZE);
+    pmesh_put(&out, s->crc, PMESH_CRC_SIZE);
     s->size += PMESH_CRC_SIZE;
 
     if (type != PMESH_CHUNK_END)
-        s->hash = pmesh_hash_crc(s->hash, crc);
+        s->hash = pmesh_hash_crc(s->hash, s->crc);
     if (size > s->largest && type != PMESH_CHUNK_NAMES)
         s->largest = size;
 }
@@ -91,7 +91,7 @@ pmesh_status enc_stream_write(enc_stream *s, pmesh_header_chunk *header,
     memcpy(head, PMESH_SIGNATURE, PMESH_SIGNATURE_SIZE);
     pmesh_writer start = { head + PMESH_SIGNATURE_SIZE, 0, MAX_START, false };
     const uint32_t crc =
-        frame(&start, PMESH_CHUNK_HEADER, payload, (uint32_t)body.size);
+        frame(&start, 0, PMESH_CHUNK_HEADER, payload, (uint32_t)body.size);
     pmesh_writer end = { tail, 0, sizeof tail, false };
     pmesh_put(&end, crc, PMESH_CRC_SIZE);
 

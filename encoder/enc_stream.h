@@ -14,6 +14,7 @@ typedef struct enc_stream {
     uint8_t *data; /* everything behind the header chunk */
     size_t size, capacity;
     uint64_t hash;
+    uint32_t crc;     /* of all chunks so far */
     uint32_t largest; /* payload */
     bool failed;      /* out of memory, sticky */
 } enc_stream;

@@ -5,6 +5,12 @@
 
 enum { BINARY_FORM = 0x80 };
 
+bool pmesh_chunk_is_chained(uint8_t type)
+{
+    return type < PMESH_CHUNK_SKIPPABLE && type != PMESH_CHUNK_HEADER &&
+           type != PMESH_CHUNK_SCENE;
+}
+
 uint64_t pmesh_hash_crc(uint64_t hash, uint32_t crc)
 {
     for (int i = 0; i < 4; i++)

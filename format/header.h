@@ -45,6 +45,11 @@ void pmesh_header_write(pmesh_writer *out, const pmesh_header_chunk *h);
 pmesh_status pmesh_header_read(pmesh_cursor *in, pmesh_header_chunk *h,
                                const char **rule);
 
+/* Whether a chunk's checksum goes on from that of the chained one before it
+ * (SPEC 5.2): those of critical chunks behind the header. One that is missing, or
+ * stands in another's place, is noticed at once, not at the end. */
+bool pmesh_chunk_is_chained(uint8_t type);
+
 /* The content hash is FNV-1a, 64 bits, over the CRCs of the critical chunks
  * between header and end, in file order. */
 #define PMESH_HASH_START 0xcbf29ce484222325u

@@ -214,7 +214,7 @@ static void break_hash(void)
     shape_bytes file = chunks_put_together(&c);
     uint8_t *crc = file.data + 8 + framed - 4;
     crc[-(ptrdiff_t)payload + 1] ^= 1; /* behind the version */
-    const uint32_t now = ref_crc32c(file.data + 8, framed - 4);
+    const uint32_t now = ref_crc32c(0, file.data + 8, framed - 4);
     for (size_t i = 0; i < 4; i++)
         crc[i] = (uint8_t)(now >> (8 * i));
     judge("scene-content-hash", file,

@@ -52,7 +52,7 @@ void chunks_take_apart(const shape_bytes *file, chunks *out)
     }
 }
 
-static uint32_t put_chunk(shape_bytes *out, const chunk *c)
+static uint32_t put_chunk(shape_bytes *out, uint32_t before, const chunk *c)
 {
     const size_t start = out->size;
     size_t left = c->size;
@@ -63,7 +63,8 @@ static uint32_t put_chunk(shape_bytes *out, const chunk *c)
         left /= 128;
     } while (left > 0);
     bytes_put(out, c->data, c->size);
-    const uint32_t crc = ref_crc32c(out->data + start, out->size - start);
+    const uint32_t crc =
+        ref_crc32c(before, out->data + start, out->size - start);
     for (int i = 0; i < 4; i++) {
         const uint8_t byte = (uint8_t)(crc >> (8 * i));
         bytes_put(out, &byte, 1);
@@ -84,13 +85,15 @@ shape_bytes chunks_put_together(chunks *c)
     shape_bytes out = { 0 };
     for (int pass = 0; pass < 2; pass++) {
         uint64_t hash = 0xcbf29ce484222325u;
+        uint32_t before = 0;
         out.size = 0;
         bytes_put(&out, signature, SIGNATURE);
         for (uint32_t i = 0; i < c->count; i++) {
-            const uint32_t crc = put_chunk(&out, &c->at[i]);
-            if (!is_header(&c->at[i]) && c->at[i].type != CHUNK_END &&
-                c->at[i].type < 128)
-                hash = ref_hash_crc(hash, crc);
+            const bool goes_on = !is_header(&c->at[i]) && c->at[i].type < 128;
+            const uint32_t crc =
+                put_chunk(&out, goes_on ? before : 0, &c->at[i]);
+            if (goes_on && c->at[i].type != CHUNK_END)
+                hash = ref_hash_crc(hash, before = crc);
         }
         chunk *header = &c->at[0];
         const bool has_hash = c->count > 0 && is_header(header);

@@ -310,7 +310,8 @@ uint64_t ref_get_varint(ref_bytes *in);
 /* 5. Decodes a file, or a beginning of one. */
 ref *ref_decode(const uint8_t *data, size_t size);
 void ref_free(ref *r);
-uint32_t ref_crc32c(const uint8_t *data, size_t size);
+/* Goes on from the CRC of the bytes before; 0: there are none. */
+uint32_t ref_crc32c(uint32_t crc, const uint8_t *data, size_t size);
 uint64_t ref_hash_crc(uint64_t h, uint32_t crc);
 void ref_read_header(ref *r, const uint8_t *data, size_t size);
 /* The n-th string of the names chunk, "" if there is none. */

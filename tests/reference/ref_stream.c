@@ -58,9 +58,9 @@ uint64_t ref_get_varint(ref_bytes *in)
     ref_reject(in->r, "2: a varint is too long");
 }
 
-uint32_t ref_crc32c(const uint8_t *data, size_t size)
+uint32_t ref_crc32c(uint32_t crc, const uint8_t *data, size_t size)
 {
-    uint32_t crc = UINT32_MAX; /* 82f63b78 is 1edc6f41 reflected */
+    crc = ~crc; /* 82f63b78 is 1edc6f41 reflected */
     for (size_t i = 0; i < size; i++) {
         crc ^= data[i];
         for (int k = 0; k < 8; k++)
@@ -212,20 +212,23 @@ static void read_payload(ref *r, const chunk *c)
 static void read_chunks(ref *r, const uint8_t *data, size_t size)
 {
     uint64_t hash = 0xcbf29ce484222325u;
+    uint32_t before = 0;
     bool has_header = false;
     for (size_t at = 8;;) {
         const chunk c = read_frame(r, data + at, size - at);
         check_place(r, &c, has_header);
         if (size - at < c.crc_at + 4)
             stop(r, REF_INCOMPLETE, "");
-        const uint32_t crc = ref_crc32c(data + at, c.crc_at);
+        const bool goes_on = has_header && c.type < SKIPPABLE;
+        const uint32_t crc =
+            ref_crc32c(goes_on ? before : 0, data + at, c.crc_at);
         const uint8_t *stored = data + at + c.crc_at;
         for (int i = 0; i < 4; i++)
             ref_check(r, stored[i] == (crc >> (8 * i) & 255), "5.2: crc");
         if (c.type == END)
             break;
-        if (has_header && c.type < SKIPPABLE)
-            hash = ref_hash_crc(hash, crc);
+        if (goes_on)
+            hash = ref_hash_crc(hash, before = crc);
         read_payload(r, &c);
         has_header = true;
         at += c.crc_at + 4;

@@ -5,6 +5,7 @@
 
 #include "format/crc32c.h"
 #include "format/cursor.h"
+#include "format/header.h"
 #include "format/layout.h"
 #include "tests/unit/shapes.h"
 #include "tests/unit/test.h"
@@ -59,15 +60,18 @@ TEST(every_flipped_bit_is_noticed)
 static void forge_checksums(uint8_t *data, size_t size)
 {
     size_t at = PMESH_SIGNATURE_SIZE;
+    uint32_t chain = 0;
     while (at < size) {
         pmesh_cursor in = pmesh_cursor_make(data + at, size - at);
-        pmesh_get_u8(&in);
+        const bool chained = pmesh_chunk_is_chained(pmesh_get_u8(&in));
         const uint64_t payload = pmesh_get_varint(&in);
         const size_t start = (size_t)(in.next - (data + at));
         if (in.overrun || payload + PMESH_CRC_SIZE > size - at - start)
             return;
         const size_t body = start + (size_t)payload;
-        const uint32_t crc = pmesh_crc32c(0, data + at, body);
+        const uint32_t crc = pmesh_crc32c(chained ? chain : 0, data + at, body);
+        if (chained)
+            chain = crc;
         for (size_t i = 0; i < PMESH_CRC_SIZE; i++)
             data[at + body + i] = (uint8_t)(crc >> (8 * i));
         at += body + PMESH_CRC_SIZE;
@@ -202,6 +206,74 @@ TEST(a_draco_buffer_larger_than_its_chunk_is_refused)
         pmesh_decoder_destroy(dec);
         free(b.data);
     }
+}
+
+/* Where chunks start, and the last ends; returns their number. */
+static uint32_t list_chunks(const shape_bytes *b, size_t *at, uint32_t room)
+{
+    uint32_t n = 0;
+    at[0] = PMESH_SIGNATURE_SIZE;
+    while (at[n] < b->size && n + 1 < room) {
+        pmesh_cursor in = pmesh_cursor_make(b->data + at[n], b->size - at[n]);
+        pmesh_get_u8(&in);
+        const size_t size = (size_t)pmesh_get_varint(&in) + PMESH_CRC_SIZE;
+        at[n + 1] = (size_t)(in.next - b->data) + size;
+        n++;
+    }
+    return n;
+}
+
+static void append(shape_bytes *out, const shape_bytes *b, const size_t *at,
+                   uint32_t chunk)
+{
+    const size_t size = at[chunk + 1] - at[chunk];
+    memcpy(out->data + out->size, b->data + at[chunk], size);
+    out->size += size;
+}
+
+/* A chunk that is missing, repeated, or swapped with the next one is noticed
+ * where it stands, before it can change what is shown. */
+TEST(chunks_out_of_place_are_noticed_at_once)
+{
+    enum { ROOM = 64 };
+    size_t at[ROOM];
+    shape_bytes b = bake(SHAPE_SPHERE, 12, PMESH_SUBSET);
+    const uint32_t n = list_chunks(&b, at, ROOM);
+    CHECK(n > 8 && n < ROOM - 1);
+    for (uint32_t kind = 0; kind < 3; kind++)
+        for (uint32_t i = 1; i + 1 < n; i++) {
+            shape_bytes bad = { .data = malloc(2 * b.size) };
+            memcpy(bad.data, b.data, at[0]);
+            bad.size = at[0];
+            for (uint32_t k = 0; k < n; k++) {
+                const bool here = k == i;
+                if (kind != 0 || !here)
+                    append(&bad, &b, at, kind == 2 && here       ? i + 1
+                                         : kind == 2 && k == i + 1 ? i
+                                                                   : k);
+                if (kind == 1 && here)
+                    append(&bad, &b, at, i);
+            }
+            pmesh_status status, whole;
+            pmesh_view v = { 0 }, w = { 0 };
+            const size_t good = at[kind == 1 ? i + 1 : i];
+            pmesh_decoder *dec =
+                shape_decode(bad.data, bad.size, bad.size, &status);
+            pmesh_decoder *until = shape_decode(b.data, good, good, &whole);
+            CHECK(status < 0 && whole == PMESH_NEED_DATA);
+            CHECK(pmesh_decoder_error(dec).offset == good);
+            pmesh_decoder_refine(dec, NULL, NULL);
+            pmesh_decoder_refine(until, NULL, NULL);
+            pmesh_decoder_mesh(dec, &v);
+            pmesh_decoder_mesh(until, &w);
+            CHECK(v.face_count == w.face_count);
+            CHECK(v.face_count == 0 ||
+                  shape_view_hash(dec) == shape_view_hash(until));
+            pmesh_decoder_destroy(until);
+            pmesh_decoder_destroy(dec);
+            free(bad.data);
+        }
+    free(b.data);
 }
 
 TEST(bytes_behind_the_end_are_ignored)
