@@ -13,6 +13,7 @@
 #include "tools/asset.h"
 #include "tools/corners.h"
 #include "tools/draco.h"
+#include "tools/ration.h"
 
 namespace {
 
@@ -30,6 +31,12 @@ constexpr uint64_t max_faces = uint64_t{1} << 27;
 constexpr uint64_t free_faces = uint64_t{1} << 16;
 constexpr uint64_t faces_per_byte = 128;
 
+/* What it may ask for then: at once a table of entropy coding (4 MiB) or 24 bytes
+ * for each face and point, in all 250 of these, as measured with normals and
+ * texture coordinates; five and sixteen times as much, for more attributes. */
+constexpr uint64_t table_bytes = uint64_t{6} << 20, bytes_at_once = 128;
+constexpr uint64_t many_tables = uint64_t{128} << 20, bytes_in_all = 4096;
+
 using draco::GeometryAttribute;
 using draco::PointAttribute;
 using draco::PointIndex;
@@ -40,7 +47,8 @@ bool is_integer(const PointAttribute &attribute)
            attribute.data_type() <= draco::DT_UINT64;
 }
 
-void check_claim(const uint8_t *data, size_t size)
+/* Faces and points. */
+uint64_t check_claim(const uint8_t *data, size_t size)
 {
     draco_claim claim;
     if (!draco_claim_read(data, size, &claim))
@@ -53,21 +61,36 @@ void check_claim(const uint8_t *data, size_t size)
     if (claim.faces > limit || claim.points > 3 * limit)
         throw std::runtime_error("the Draco stream claims more faces than its "
                                  "bytes can hold");
+    return claim.faces + claim.points;
+}
+
+std::unique_ptr<draco::Mesh> decode(const uint8_t *data, size_t size)
+{
+    const uint64_t n = check_claim(data, size);
+    const ration memory(table_bytes + bytes_at_once * n,
+                        many_tables + bytes_in_all * n);
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char *>(data), size);
+    try {
+        draco::Decoder decoder;
+        auto result = decoder.DecodeMeshFromBuffer(&buffer);
+        if (!result.ok())
+            throw std::runtime_error("damaged Draco stream: " +
+                                     result.status().error_msg_string());
+        return std::move(result).value();
+    } catch (const std::bad_alloc &) {
+        if (!memory.was_too_small())
+            throw;
+        throw std::runtime_error("the Draco stream asks for more memory than "
+                                 "its faces need");
+    }
 }
 
 } // namespace
 
 std::unique_ptr<draco::Mesh> draco_decode(const uint8_t *data, size_t size)
 {
-    check_claim(data, size);
-    draco::DecoderBuffer buffer;
-    buffer.Init(reinterpret_cast<const char *>(data), size);
-    draco::Decoder decoder;
-    auto result = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!result.ok())
-        throw std::runtime_error("damaged Draco stream: " +
-                                 result.status().error_msg_string());
-    std::unique_ptr<draco::Mesh> mesh = std::move(result).value();
+    std::unique_ptr<draco::Mesh> mesh = decode(data, size);
 
     if (!mesh || mesh->num_faces() == 0)
         throw std::runtime_error("the Draco stream has no triangles");
