@@ -46,8 +46,8 @@ pmesh_status pmesh_header_read(pmesh_cursor *in, pmesh_header_chunk *h,
                                const char **rule);
 
 /* Whether a chunk's checksum goes on from that of the chained one before it
- * (SPEC 5.2): those of critical chunks behind the header. One that is missing, or
- * stands in another's place, is noticed at once, not at the end. */
+ * (SPEC 5.2), as those of critical chunks behind the header do. One that is
+ * missing, or stands in another's place, is noticed at once, not at the end. */
 bool pmesh_chunk_is_chained(uint8_t type);
 
 /* The content hash is FNV-1a, 64 bits, over the CRCs of the critical chunks

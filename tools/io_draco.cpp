@@ -31,9 +31,9 @@ constexpr uint64_t max_faces = uint64_t{1} << 27;
 constexpr uint64_t free_faces = uint64_t{1} << 16;
 constexpr uint64_t faces_per_byte = 128;
 
-/* What it may ask for then: at once a table of entropy coding (4 MiB) or 24 bytes
- * for each face and point, in all 250 of these, as measured with normals and
- * texture coordinates; five and sixteen times as much, for more attributes. */
+/* What it may ask for then: at once a table of entropy coding (4 MiB) or 24
+ * bytes for each face and point, in all 250 of these, as measured with normals
+ * and texture coordinates; 5 and 16 times as much, for more attributes. */
 constexpr uint64_t table_bytes = uint64_t{6} << 20, bytes_at_once = 128;
 constexpr uint64_t many_tables = uint64_t{128} << 20, bytes_in_all = 4096;
 
