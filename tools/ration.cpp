@@ -27,6 +27,11 @@ bool take(size_t size)
     return true;
 }
 
+void *get(size_t size)
+{
+    return take(size) ? std::malloc(size > 0 ? size : 1) : nullptr;
+}
+
 } // namespace
 
 ration::ration(uint64_t at_once, uint64_t in_all)
@@ -46,14 +51,30 @@ bool ration::was_too_small() const
     return now.refused;
 }
 
-/* All other forms of new, but those for objects of large alignment, call this
- * one. Nobody sets a handler. */
+/* All forms but those for objects of large alignment: sanitizers have their own
+ * of each, which do not call the others. */
+
 void *operator new(size_t size)
 {
-    void *p = take(size) ? std::malloc(size > 0 ? size : 1) : nullptr;
+    void *p = get(size);
     if (!p)
         throw std::bad_alloc();
     return p;
+}
+
+void *operator new[](size_t size)
+{
+    return operator new(size);
+}
+
+void *operator new(size_t size, const std::nothrow_t &) noexcept
+{
+    return get(size);
+}
+
+void *operator new[](size_t size, const std::nothrow_t &) noexcept
+{
+    return get(size);
 }
 
 void operator delete(void *p) noexcept
@@ -61,7 +82,27 @@ void operator delete(void *p) noexcept
     std::free(p);
 }
 
+void operator delete[](void *p) noexcept
+{
+    std::free(p);
+}
+
 void operator delete(void *p, size_t) noexcept
+{
+    std::free(p);
+}
+
+void operator delete[](void *p, size_t) noexcept
+{
+    std::free(p);
+}
+
+void operator delete(void *p, const std::nothrow_t &) noexcept
+{
+    std::free(p);
+}
+
+void operator delete[](void *p, const std::nothrow_t &) noexcept
 {
     std::free(p);
 }
