@@ -29,25 +29,25 @@ static pmesh_status read_chunk(const enc_split *s, size_t at, chunk *out)
     return in.overrun ? PMESH_NEED_DATA : PMESH_OK;
 }
 
-/* Whether its checksum is right; `chain` is that of the last which goes on. */
-static pmesh_status check(const enc_split *s, size_t at, const chunk *c,
-                          uint32_t *chain)
+/* With the right checksum; `chain` is that of the last which goes on. */
+static pmesh_status take_chunk(const enc_split *s, size_t at, uint32_t *chain,
+                               chunk *out)
 {
-    const bool chained = pmesh_chunk_is_chained(c->type);
+    const pmesh_status status = read_chunk(s, at, out);
+    if (status != PMESH_OK)
+        return status;
+    const bool chained = pmesh_chunk_is_chained(out->type);
     const uint32_t crc = pmesh_crc32c(chained ? *chain : 0, s->data + at,
-                                      c->end - PMESH_CRC_SIZE - at);
+                                      out->end - PMESH_CRC_SIZE - at);
     if (chained)
         *chain = crc;
-    return crc == c->crc ? PMESH_OK : PMESH_E_CHECKSUM;
+    return crc == out->crc ? PMESH_OK : PMESH_E_CHECKSUM;
 }
 
-static pmesh_status read_header(enc_split *s, size_t at, chunk *c)
+static pmesh_status read_header(enc_split *s, uint32_t *chain, chunk *c)
 {
     const char *rule;
-    uint32_t unused = 0;
-    pmesh_status status = read_chunk(s, at, c);
-    if (status == PMESH_OK)
-        status = check(s, at, c, &unused);
+    const pmesh_status status = take_chunk(s, PMESH_SIGNATURE_SIZE, chain, c);
     if (status != PMESH_OK)
         return status;
     if (c->type != PMESH_CHUNK_HEADER)
@@ -58,21 +58,17 @@ static pmesh_status read_header(enc_split *s, size_t at, chunk *c)
 
 pmesh_status enc_split_open(enc_split *s, const void *data, size_t size)
 {
-    chunk c;
+    chunk c = { 0 };
     uint32_t chain = 0;
 
     *s = (enc_split){ .data = data, .size = size };
     if (size < PMESH_SIGNATURE_SIZE ||
         memcmp(data, PMESH_SIGNATURE, PMESH_SIGNATURE_SIZE) != 0)
         return PMESH_E_MAGIC;
-    pmesh_status status = read_header(s, PMESH_SIGNATURE_SIZE, &c);
+    pmesh_status status = read_header(s, &chain, &c);
     s->header_end = c.end;
-    while (status == PMESH_OK && c.type != PMESH_CHUNK_END) {
-        const size_t at = c.end;
-        status = read_chunk(s, at, &c);
-        if (status == PMESH_OK)
-            status = check(s, at, &c, &chain);
-    }
+    while (status == PMESH_OK && c.type != PMESH_CHUNK_END)
+        status = take_chunk(s, c.end, &chain, &c);
     if (status == PMESH_OK)
         s->size = c.end; /* bytes behind the end mean nothing */
     return status;
