@@ -60,10 +60,10 @@ if [ -n "${LONG-}" ]; then
     small=$(xargs -I{} find {} -size -11b <"$dir/list")
     large=$(xargs -I{} find {} -size +10b <"$dir/list")
     # shellcheck disable=SC2086 # words on purpose
-    try 'small files, all bits' tell 0 3000 $small
+    try 'small files, all bits' tell 0 4000 $small
     cat "$dir/told"
     # shellcheck disable=SC2086
-    try 'larger files, 20,000 bits each' tell 20000 3000 $large
+    try 'larger files, 20,000 bits each' tell 20000 4000 $large
     cat "$dir/told"
     echo "$flips bits flipped, $edits edits"
     try '500,000 flips' test "$flips" -ge 500000
