@@ -36,6 +36,8 @@ static bool take(pmesh_cursor *in, uint32_t *chain, piece *out, bool *fit)
     in->next += size;
     *fit &= checksum(chain, out->type, start, (size_t)(in->next - start)) ==
             pmesh_get_u32(in);
+    out->frame = start;
+    out->frame_size = (size_t)(in->next - start);
     return true;
 }
 
@@ -58,7 +60,8 @@ bool pieces_take_apart(const uint8_t *data, size_t size, pieces *out)
         else
             more = out->at[out->count++].type != PMESH_CHUNK_END;
     }
-    out->rest = (piece){ 0, in.next, (size_t)(in.end - in.next) };
+    out->rest = (piece){ .data = in.next,
+                         .size = (size_t)(in.end - in.next) };
     return true;
 }
 

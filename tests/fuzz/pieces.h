@@ -16,6 +16,8 @@ typedef struct piece {
     uint8_t type;
     const uint8_t *data; /* the payload: points into the bytes */
     size_t size;
+    const uint8_t *frame; /* the whole chunk, its checksum included */
+    size_t frame_size;
 } piece;
 
 typedef struct pieces {
