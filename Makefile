@@ -213,7 +213,7 @@ check-reference:
 	@PMESH=$(B)/pmesh FILES=10000 MENDED=2000 DAMAGED=500 \
 	  tests/reference/run.sh
 
-## check-damage: every prefix of 30 files, 500,000 flips, 100,000 edits
+## check-damage: every prefix of 28 files, 500,000 flips, 100,000 edits
 check-damage:
 	+@$(submake) $(B)/pmesh $(damage)
 	@PMESH=$(B)/pmesh LONG=1 tests/damage/run.sh

@@ -208,6 +208,8 @@ TEST(a_draco_buffer_larger_than_its_chunk_is_refused)
     }
 }
 
+enum { CHUNKS = 64 };
+
 /* Where chunks start, and the last ends; returns their number. */
 static uint32_t list_chunks(const shape_bytes *b, size_t *at, uint32_t room)
 {
@@ -223,54 +225,66 @@ static uint32_t list_chunks(const shape_bytes *b, size_t *at, uint32_t room)
     return n;
 }
 
-static void append(shape_bytes *out, const shape_bytes *b, const size_t *at,
-                   uint32_t chunk)
+typedef enum misplacing { MISSING, REPEATED, SWAPPED, MISPLACINGS } misplacing;
+
+/* The file with that done to chunk i of n; SWAPPED with the next. To free. */
+static shape_bytes misplace(const shape_bytes *b, const size_t *at, uint32_t n,
+                            uint32_t i, misplacing kind)
 {
-    const size_t size = at[chunk + 1] - at[chunk];
-    memcpy(out->data + out->size, b->data + at[chunk], size);
-    out->size += size;
+    shape_bytes out = { .data = malloc(2 * b->size), .size = at[0] };
+    uint32_t order[2 * CHUNKS], count = 0;
+    for (uint32_t k = 0; k < n; k++) {
+        if (k != i || kind != MISSING)
+            order[count++] = k;
+        if (k == i && kind == REPEATED)
+            order[count++] = k;
+    }
+    if (kind == SWAPPED) {
+        order[i] = i + 1;
+        order[i + 1] = i;
+    }
+    memcpy(out.data, b->data, at[0]);
+    for (uint32_t k = 0; k < count; k++) {
+        const size_t from = at[order[k]], size = at[order[k] + 1] - from;
+        memcpy(out.data + out.size, b->data + from, size);
+        out.size += size;
+    }
+    return out;
+}
+
+/* Refused behind the first `good` bytes, with what these show. */
+static void check_refused(const shape_bytes *bad, const shape_bytes *b,
+                          size_t good)
+{
+    pmesh_status status, before;
+    pmesh_view v = { 0 }, w = { 0 };
+    pmesh_decoder *dec = shape_decode(bad->data, bad->size, bad->size, &status);
+    pmesh_decoder *cut = shape_decode(b->data, good, good, &before);
+
+    CHECK(status < 0 && before == PMESH_NEED_DATA);
+    CHECK(pmesh_decoder_error(dec).offset == good);
+    pmesh_decoder_refine(dec, NULL, NULL);
+    pmesh_decoder_refine(cut, NULL, NULL);
+    pmesh_decoder_mesh(dec, &v);
+    pmesh_decoder_mesh(cut, &w);
+    CHECK(v.face_count == w.face_count);
+    CHECK(v.face_count == 0 || shape_view_hash(dec) == shape_view_hash(cut));
+    pmesh_decoder_destroy(cut);
+    pmesh_decoder_destroy(dec);
 }
 
 /* A chunk that is missing, repeated, or swapped with the next one is noticed
  * where it stands, before it can change what is shown. */
 TEST(chunks_out_of_place_are_noticed_at_once)
 {
-    enum { ROOM = 64 };
-    size_t at[ROOM];
+    size_t at[CHUNKS];
     shape_bytes b = bake(SHAPE_SPHERE, 12, PMESH_SUBSET);
-    const uint32_t n = list_chunks(&b, at, ROOM);
-    CHECK(n > 8 && n < ROOM - 1);
-    for (uint32_t kind = 0; kind < 3; kind++)
+    const uint32_t n = list_chunks(&b, at, CHUNKS);
+    CHECK(n > 8 && n < CHUNKS - 1);
+    for (int kind = 0; kind < MISPLACINGS; kind++)
         for (uint32_t i = 1; i + 1 < n; i++) {
-            shape_bytes bad = { .data = malloc(2 * b.size) };
-            memcpy(bad.data, b.data, at[0]);
-            bad.size = at[0];
-            for (uint32_t k = 0; k < n; k++) {
-                const bool here = k == i;
-                if (kind != 0 || !here)
-                    append(&bad, &b, at, kind == 2 && here       ? i + 1
-                                         : kind == 2 && k == i + 1 ? i
-                                                                   : k);
-                if (kind == 1 && here)
-                    append(&bad, &b, at, i);
-            }
-            pmesh_status status, whole;
-            pmesh_view v = { 0 }, w = { 0 };
-            const size_t good = at[kind == 1 ? i + 1 : i];
-            pmesh_decoder *dec =
-                shape_decode(bad.data, bad.size, bad.size, &status);
-            pmesh_decoder *until = shape_decode(b.data, good, good, &whole);
-            CHECK(status < 0 && whole == PMESH_NEED_DATA);
-            CHECK(pmesh_decoder_error(dec).offset == good);
-            pmesh_decoder_refine(dec, NULL, NULL);
-            pmesh_decoder_refine(until, NULL, NULL);
-            pmesh_decoder_mesh(dec, &v);
-            pmesh_decoder_mesh(until, &w);
-            CHECK(v.face_count == w.face_count);
-            CHECK(v.face_count == 0 ||
-                  shape_view_hash(dec) == shape_view_hash(until));
-            pmesh_decoder_destroy(until);
-            pmesh_decoder_destroy(dec);
+            shape_bytes bad = misplace(&b, at, n, i, (misplacing)kind);
+            check_refused(&bad, &b, at[kind == REPEATED ? i + 1 : i]);
             free(bad.data);
         }
     free(b.data);

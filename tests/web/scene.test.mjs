@@ -109,8 +109,11 @@ test("the document is glTF, and resources come whole", async () => {
 test("a document unpacks to what its size allows", async () => {
     const text = "a few words";
     assert.equal(await unpack(deflateSync(text)), text);
-    const much = deflateSync(Buffer.alloc(100 << 20, " "));
-    await assert.rejects(unpack(much), { name: "PmeshError", code: "limit" });
+    for (const [word, times] of [[" ", 100 << 20], ["[],", 1 << 20]])
+        await assert.rejects(unpack(deflateSync(word.repeat(times))),
+            { name: "PmeshError", code: "limit" });
+    const quoted = `["${"[],".repeat(1 << 20)}"]`;
+    assert.equal(await unpack(deflateSync(quoted)), quoted);
     await assert.rejects(unpack(deflateSync(text).subarray(0, 9)));
 });
 
